@@ -1,0 +1,74 @@
+# What people and CI call. `make` alone lists it. scripts/setup installs what is missing, so nothing is run by hand before.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+MAKEFLAGS += --no-builtin-rules --no-print-directory
+# Two cargo runs over one target folder only wait for each other; cargo itself uses every core. So make starts one
+# thing at a time, and a -j given to it is kept from cargo, which would look for make's job tokens in vain.
+.NOTPARALLEL:
+unexport MAKEFLAGS MFLAGS
+.PHONY: help play build page test tests check lint docs clean FORCE
+
+# The command is always compiled with its page, so that no target undoes the work of another.
+WORKSPACE := --workspace --features qhat-cli/page
+COMMAND := target/release/qhat
+PAGE := playground/dist/index.html
+WASM := playground/src/wasm/qhat_wasm_bg.wasm
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-7s %s\n", $$1, $$2 }' Makefile
+
+play: build ## open the page (SCENE=scenes/name.toml for a scene of your own)
+	@$(COMMAND) play $(SCENE)
+
+build: page ## the qhat command with the page inside, in target/release/qhat
+	@echo "Building the command"
+	@cargo build --release --package qhat-cli --features page
+
+page: $(PAGE) ## the page alone, in playground/dist
+
+# Folders stand in the list beside their files, so that a removed file counts as a change.
+$(PAGE): $(WASM) $(shell find playground/src playground/public scenes -path playground/src/wasm -prune -o -print 2>/dev/null) \
+		$(wildcard playground/*.json playground/*.ts playground/*.html)
+	@echo "Building the page"
+	@npm --prefix playground run --silent build
+
+# Asked every time, because cargo knows best what changed; the script leaves the file alone when its content is the same.
+$(WASM): FORCE
+	@scripts/setup wasm page
+	@echo "Building the engine for the browser"
+	@scripts/build-wasm
+
+# In this order, one after the other: what a test says counts more than what a lint does.
+test: build tests lint docs ## everything that must hold, here and in CI
+
+tests:
+	@scripts/setup browser
+	@echo "Testing the Rust crates"
+	@cargo test --release $(WORKSPACE)
+	@echo "Testing that a debug build computes the same bits"
+	@cargo test --package qhat --test golden
+	@echo "Testing that wasm computes the same bits"
+	@scripts/build-wasm --node
+	@node --test crates/qhat-wasm/tests/golden.mjs
+	@echo "Testing the page"
+	@npm --prefix playground run --silent test
+
+check: lint ## the quick loop while writing: formatting, lints, types, fast tests
+	@echo "Running the fast tests"
+	@cargo test --release --package qhat --package qhat-scene
+	@npm --prefix playground run --silent test:unit
+
+lint: page
+	@echo "Checking format, lints and types"
+	@cargo fmt --all --check
+	@cargo clippy $(WORKSPACE) --all-targets -- -D warnings
+	@npm --prefix playground run --silent check
+
+docs: ## the Rust documentation, in target/doc
+	@echo "Building the documentation"
+	@RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+
+clean: ## remove everything that was built (npm packages and cached tools stay)
+	@cargo clean --quiet
+	@rm -rf playground/dist playground/src/wasm

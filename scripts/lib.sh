@@ -1,0 +1,59 @@
+# shellcheck shell=bash
+# What scripts/setup and scripts/build-wasm both need to know: where downloaded tools are kept, which Rust can
+# compile for the browser, and which wasm-bindgen belongs to this checkout.
+
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/qhat
+wasm_target=wasm32-unknown-unknown
+
+say() { printf '%s: %s\n' "${0##*/}" "$*"; }
+die() {
+    printf '%s: %s\n' "${0##*/}" "$*" >&2
+    exit 1
+}
+
+# The Rust that compiles for the browser: `own` (the one on PATH has the target), `debian` (the second Rust of
+# Debian 12, which builds the standard library from source), or nothing. Looking into the sysroot rather than asking
+# rustup also finds the target of a Rust that rustup does not manage.
+wasm_rust() {
+    if [ -d "$(rustc --print sysroot)/lib/rustlib/$wasm_target/lib" ]; then
+        echo own
+    elif [ -x /usr/bin/rustc ] && [ -x /usr/bin/cargo ] && debian_std_source >/dev/null && wasm_linker >/dev/null; then
+        echo debian
+    fi
+}
+
+# Where the second Rust looks for the source of its standard library, as -Z build-std expects it.
+debian_std_source() {
+    local source
+    source=$(/usr/bin/rustc --print sysroot)/lib/rustlib/src/rust/library/Cargo.lock
+    [ -e "$source" ] && echo "$source"
+}
+
+# Debian's second Rust comes without a linker for wasm: lend it the one inside the rustup toolchain, or LLVM's.
+wasm_linker() {
+    local host
+    host=$(rustc -vV | sed -n 's/^host: //p')
+    for linker in "$(rustc --print sysroot)/lib/rustlib/$host/bin/rust-lld" wasm-ld wasm-ld-19; do
+        command -v "$linker" && return
+    done
+    return 1
+}
+
+# The glue and the crate must be of one version, and Cargo.lock is where that version is written.
+wasm_bindgen_version() {
+    local version
+    [ -e Cargo.lock ] || die "Cargo.lock is missing; it says which wasm-bindgen to use"
+    version=$(awk '/^name = "wasm-bindgen"$/ { getline; gsub(/version = |"/, ""); print; exit }' Cargo.lock)
+    [ -n "$version" ] || die "Cargo.lock names no wasm-bindgen"
+    echo "$version"
+}
+
+# The wasm-bindgen command of that version: our own copy, or one on PATH if it is exactly the same.
+wasm_bindgen() {
+    local version=$1 own=$cache/wasm-bindgen-$1/bin/wasm-bindgen
+    if [ -x "$own" ]; then
+        echo "$own"
+    elif [ "$(wasm-bindgen --version 2>/dev/null)" = "wasm-bindgen $version" ]; then
+        command -v wasm-bindgen
+    fi
+}
