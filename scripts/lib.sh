@@ -31,7 +31,7 @@ debian_std_source() {
 
 # Debian's second Rust comes without a linker for wasm: lend it the one inside the rustup toolchain, or LLVM's.
 wasm_linker() {
-    local host
+    local host linker
     host=$(rustc -vV | sed -n 's/^host: //p')
     for linker in "$(rustc --print sysroot)/lib/rustlib/$host/bin/rust-lld" wasm-ld wasm-ld-19; do
         command -v "$linker" && return
