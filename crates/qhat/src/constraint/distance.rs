@@ -1,0 +1,137 @@
+//! Distance: two particles a and b stay r apart. A rod.
+//!
+//!     d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
+//!
+//! length form (default), [C] = m, λ in N, tension = −λ:
+//!
+//!     C  = |d| − r
+//!     Ċ  = n·u
+//!     J  = nᵀ on a, −nᵀ on b
+//!     γ  = (u·u − (n·u)²)/|d|        since C̈ = n·u̇ + ṅ·u and ṅ = (u − n (n·u))/|d|
+//!     |∂²C/∂x²| = |I − nnᵀ|/|d| = 1/|d|
+//!
+//! squared form (the source's, with the −r² it forgot), [C] = m², λ in N/m, tension = −2|d|λ:
+//!
+//!     C  = d·d − r²
+//!     Ċ  = 2 d·u
+//!     J  = 2dᵀ on a, −2dᵀ on b
+//!     γ  = 2 u·u
+//!     |∂²C/∂x²| = 2
+//!
+//! Fails at |d| = 0: the length form has no direction there and takes the first axis with γ = 0 (any unit vector is
+//! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
+//! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
+
+use super::{Formulation, Holds, RowWriter};
+use crate::point::{Motion, Point, dot, minus, norm, scaled};
+use crate::system::ParticleId;
+
+/// Which function of the distance is held at zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DistanceForm {
+    /// C = |d| − r \[m\].
+    #[default]
+    Length,
+    /// C = d·d − r² \[m²\], the source's.
+    Squared,
+}
+
+/// Two particles at a fixed distance: a rod.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distance {
+    /// One end.
+    pub a: ParticleId,
+    /// The other end.
+    pub b: ParticleId,
+    /// r [m], positive.
+    pub length: f64,
+    /// The function that is held at zero.
+    pub form: DistanceForm,
+}
+
+impl Distance {
+    /// A rod of the given length [m] in the length form.
+    pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
+        Distance { a, b, length, form: DistanceForm::Length }
+    }
+
+    /// Signed tension [N] of a multiplier of this row, positive where the rod pulls its ends together.
+    pub(crate) fn tension<const D: usize>(&self, motion: Motion<'_, D>, lambda: f64) -> f64 {
+        match self.form {
+            DistanceForm::Length => -lambda,
+            DistanceForm::Squared => -2.0 * norm(minus(motion.x(self.a), motion.x(self.b))) * lambda,
+        }
+    }
+}
+
+impl Holds for Distance {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.a, self.b]
+    }
+
+    fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
+        let d = minus(motion.x(self.a), motion.x(self.b));
+        let u = minus(motion.v(self.a), motion.v(self.b));
+        let r = self.length;
+        match self.form {
+            DistanceForm::Length => {
+                let length = norm(d);
+                let n = if length > 0.0 { scaled(1.0 / length, d) } else { first_axis() };
+                let C = length - r;
+                let Cd = dot(n, u);
+                let gamma = if length > 0.0 { (dot(u, u) - Cd * Cd) / length } else { 0.0 };
+                rows.write(C, Cd, gamma, [n, scaled(-1.0, n)]);
+            }
+            DistanceForm::Squared => {
+                let C = dot(d, d) - r * r;
+                let Cd = 2.0 * dot(d, u);
+                let gamma = 2.0 * dot(u, u);
+                rows.write(C, Cd, gamma, [scaled(2.0, d), scaled(-2.0, d)]);
+            }
+        }
+    }
+
+    fn scale(&self, _: f64) -> f64 {
+        let r = self.length;
+        match self.form {
+            DistanceForm::Length => r,
+            DistanceForm::Squared => 2.0 * r * r, // d·d − r² = 2r (|d| − r) + O((|d| − r)²)
+        }
+    }
+
+    fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        match self.form {
+            DistanceForm::Length => {
+                let length = norm(minus(motion.x(self.a), motion.x(self.b)));
+                if length > 0.0 { 1.0 / length } else { 0.0 }
+            }
+            DistanceForm::Squared => 2.0,
+        }
+    }
+
+    fn formulated(&self, formulation: Formulation) -> Self {
+        let form = match formulation {
+            Formulation::Modern => DistanceForm::Length,
+            Formulation::Classic => DistanceForm::Squared,
+        };
+        Distance { form, ..self.clone() }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.a == self.b {
+            return Err("a distance constraint needs two different particles".into());
+        }
+        if self.length.is_finite() && self.length > 0.0 {
+            return Ok(());
+        }
+        Err(format!("the length of a distance constraint must be positive and finite, but is {}", self.length))
+    }
+}
+
+fn first_axis<const D: usize>() -> Point<D> {
+    std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 })
+}

@@ -1,0 +1,99 @@
+//! Nail: one particle stays at the point p.
+//!
+//! vector form (default), d rows, [C] = m, λ in N is the nail's force on the particle:
+//!
+//!     C = x − p,   Ċ = v,   J = I,   γ = 0
+//!
+//! scalar form (the source's), one row, [C] = m², λ in N/m:
+//!
+//!     C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   |∂²C/∂x²| = 2
+//!
+//! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
+//! That is why the source needed its diagonal drag.
+
+use super::{Formulation, Holds, RowWriter};
+use crate::point::{Motion, dot, first, minus, scaled};
+use crate::system::ParticleId;
+
+/// Which function of x − p is held at zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NailForm {
+    /// C = x − p \[m\], d rows.
+    #[default]
+    Vector,
+    /// C = |x − p|² \[m²\], one row, the source's.
+    Scalar,
+}
+
+/// One particle at a fixed point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nail {
+    /// The particle that is held.
+    pub particle: ParticleId,
+    /// p [m]; the third component is ignored in two dimensions.
+    pub at: [f64; 3],
+    /// The function that is held at zero.
+    pub form: NailForm,
+}
+
+impl Nail {
+    /// A nail at p [m] in the vector form.
+    pub fn new(particle: ParticleId, at: [f64; 3]) -> Self {
+        Nail { particle, at, form: NailForm::Vector }
+    }
+}
+
+impl Holds for Nail {
+    fn row_count(&self, dimension: usize) -> usize {
+        match self.form {
+            NailForm::Vector => dimension,
+            NailForm::Scalar => 1,
+        }
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.particle]
+    }
+
+    fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
+        let away = minus(motion.x(self.particle), first::<D>(&self.at));
+        let v = motion.v(self.particle);
+        match self.form {
+            NailForm::Vector => {
+                for k in 0..D {
+                    let axis = std::array::from_fn(|j| if j == k { 1.0 } else { 0.0 });
+                    rows.write(away[k], v[k], 0.0, [axis]);
+                }
+            }
+            NailForm::Scalar => {
+                rows.write(dot(away, away), 2.0 * dot(v, away), 2.0 * dot(v, v), [scaled(2.0, away)]);
+            }
+        }
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        match self.form {
+            NailForm::Vector => extent,
+            NailForm::Scalar => extent * extent,
+        }
+    }
+
+    fn curvature<const D: usize>(&self, _: Motion<'_, D>) -> f64 {
+        match self.form {
+            NailForm::Vector => 0.0,
+            NailForm::Scalar => 2.0,
+        }
+    }
+
+    fn formulated(&self, formulation: Formulation) -> Self {
+        let form = match formulation {
+            Formulation::Modern => NailForm::Vector,
+            Formulation::Classic => NailForm::Scalar,
+        };
+        Nail { form, ..self.clone() }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.at.iter().try_for_each(|&component| crate::force::finite("the point of a nail", component))
+    }
+}

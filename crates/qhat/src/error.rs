@@ -1,0 +1,112 @@
+//! Typed errors. Each reads as a sentence with the names a user gave.
+
+use thiserror::Error;
+
+/// Why a system could not be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BuildError {
+    /// Something is wrong with a particle.
+    #[error("particle `{name}`: {message}")]
+    Particle {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Something is wrong with a constraint.
+    #[error("constraint `{name}`: {message}")]
+    Constraint {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Something is wrong with a force.
+    #[error("force number {index}: {message}")]
+    Force {
+        /// Its place in the order they were added.
+        index: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// A feedback coefficient is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// Why a setting was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SettingsError {
+    /// A number outside its range.
+    #[error("{name} must be {range}, but is {value}")]
+    OutOfRange {
+        /// The setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// An integrator that does not exist.
+    #[error("there is no integrator `{name}`; use euler, symplectic-euler, rk4 or rattle")]
+    UnknownIntegrator {
+        /// What was given.
+        name: String,
+    },
+    /// A frame that steps of h do not fill.
+    #[error("a frame of {frame} s is no multiple of the step h = {h} s")]
+    FrameNotMultiple {
+        /// Length of the frame [s].
+        frame: f64,
+        /// The step [s].
+        h: f64,
+    },
+}
+
+/// Why a step was not taken. The state is the last good one.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepError {
+    /// A coordinate or velocity became infinite or undefined.
+    #[error(
+        "at t = {time} s the motion of `{particle}` is no longer a finite number: the step h is too large for this system"
+    )]
+    NotFinite {
+        /// t of the last good state [s].
+        time: f64,
+        /// The first particle concerned.
+        particle: String,
+    },
+    /// A constraint is violated beyond recognition.
+    #[error(
+        "at t = {time} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too large, or the constraints cannot all hold"
+    )]
+    Diverged {
+        /// t of the last good state [s].
+        time: f64,
+        /// The worst row.
+        row: String,
+        /// |C| relative to the row's scale.
+        relative: f64,
+    },
+    /// No positions that satisfy the constraints were found nearby.
+    #[error("at t = {time} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}")]
+    NotSatisfied {
+        /// t of the last good state [s].
+        time: f64,
+        /// The worst row of the best try.
+        row: String,
+        /// Its |C| [C].
+        residual: f64,
+    },
+    /// The frame would need more substeps than allowed.
+    #[error("at t = {time} s the frame needs more than {max_substeps} substeps")]
+    TooManySubsteps {
+        /// t of the last good state [s].
+        time: f64,
+        /// The limit in force.
+        max_substeps: usize,
+    },
+    /// A setting was refused.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}

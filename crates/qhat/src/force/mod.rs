@@ -1,0 +1,97 @@
+//! Applied forces: Q = Σ of every force acting on every particle [N], and the energy each of them stores or takes.
+//!
+//! To add a force: write one file here with `add`, `potential` and `power`, and name it in the list below.
+
+mod drag;
+mod gravity;
+mod mouse;
+mod point_force;
+mod spring;
+
+pub use drag::Drag;
+pub use gravity::Gravity;
+pub use mouse::MouseSpring;
+pub use point_force::PointForce;
+pub use spring::Spring;
+
+use crate::point::Motion;
+use crate::system::ParticleId;
+
+/// What every force answers. `mass` is [kg], one per particle.
+pub(crate) trait Acts {
+    /// Adds this force to Q.
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64], Q: &mut [f64]);
+
+    /// Potential energy [J]; zero for a force that has none.
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64]) -> f64;
+
+    /// Power of the part that no potential accounts for [W]; negative where energy is taken.
+    fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
+
+    /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with a bound on the row sums of −∂Q/∂q and −∂Q/∂q̇:
+    /// what limits the step of an explicit method.
+    fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
+
+    /// The particles this force names; empty when it acts on all.
+    fn particles(&self) -> Vec<ParticleId>;
+
+    /// What is wrong with its numbers, in words.
+    fn check(&self) -> Result<(), String>;
+}
+
+macro_rules! forces {
+    ($($(#[$doc:meta])* $kind:ident,)*) => {
+        /// Any force; one variant a kind.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Force { $($(#[$doc])* $kind($kind),)* }
+
+        $(impl From<$kind> for Force {
+            fn from(force: $kind) -> Self { Force::$kind(force) }
+        })*
+
+        impl Acts for Force {
+            fn add<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64], Q: &mut [f64]) {
+                match self { $(Force::$kind(force) => force.add(motion, mass, Q),)* }
+            }
+            fn potential<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64]) -> f64 {
+                match self { $(Force::$kind(force) => force.potential(motion, mass),)* }
+            }
+            fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+                match self { $(Force::$kind(force) => force.power(motion),)* }
+            }
+            fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+                match self { $(Force::$kind(force) => force.stiffness(motion, bound),)* }
+            }
+            fn particles(&self) -> Vec<ParticleId> {
+                match self { $(Force::$kind(force) => force.particles(),)* }
+            }
+            fn check(&self) -> Result<(), String> {
+                match self { $(Force::$kind(force) => force.check(),)* }
+            }
+        }
+    };
+}
+
+forces! {
+    /// Uniform gravity.
+    Gravity,
+    /// Viscous drag on every particle.
+    Drag,
+    /// Damped Hookean spring between two particles.
+    Spring,
+    /// Constant force on one particle.
+    PointForce,
+    /// Damped spring between one particle and a point that a hand moves.
+    MouseSpring,
+}
+
+/// `Ok` if the number is finite; otherwise a sentence that names it.
+pub(crate) fn finite(what: &str, value: f64) -> Result<(), String> {
+    if value.is_finite() { Ok(()) } else { Err(format!("{what} must be a finite number, not {value}")) }
+}
+
+/// `Ok` if the number is finite and not negative; otherwise a sentence that names it.
+pub(crate) fn not_negative(what: &str, value: f64) -> Result<(), String> {
+    finite(what, value)?;
+    if value >= 0.0 { Ok(()) } else { Err(format!("{what} must not be negative, but is {value}")) }
+}

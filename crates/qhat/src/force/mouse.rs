@@ -1,0 +1,56 @@
+//! Mouse spring: a damped spring of no length between a particle and the point p that a hand moves.
+//!
+//!     F = −ks (x − p) − kd v         [N]
+//!     V = ½ ks |x − p|²              [J]
+//!     power of the damper = −kd v·v  [W]
+//!
+//! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
+
+use super::{Acts, finite, not_negative};
+use crate::point::{Motion, add, dot, first, minus, scaled};
+use crate::system::ParticleId;
+
+/// Damped spring between one particle and a point that a hand moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MouseSpring {
+    /// The particle that is pulled.
+    pub particle: ParticleId,
+    /// p [m]; the third component is ignored in two dimensions.
+    pub target: [f64; 3],
+    /// ks [N/m], not negative.
+    pub stiffness: f64,
+    /// kd [N·s/m], not negative.
+    pub damping: f64,
+}
+
+impl Acts for MouseSpring {
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        let away = minus(motion.x(self.particle), first::<D>(&self.target));
+        add(Q, self.particle, scaled(-self.stiffness, away));
+        add(Q, self.particle, scaled(-self.damping, motion.v(self.particle)));
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        let away = minus(motion.x(self.particle), first::<D>(&self.target));
+        0.5 * self.stiffness * dot(away, away)
+    }
+
+    fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let v = motion.v(self.particle);
+        -self.damping * dot(v, v)
+    }
+
+    fn stiffness<const D: usize>(&self, _: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+        bound(self.particle, self.stiffness, self.damping);
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.particle]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        not_negative("the stiffness of the mouse spring", self.stiffness)?;
+        not_negative("the damping of the mouse spring", self.damping)?;
+        self.target.iter().try_for_each(|&component| finite("the target of the mouse spring", component))
+    }
+}

@@ -1,0 +1,41 @@
+//! Constant force on one particle.
+//!
+//!     F = f                          [N]
+//!     V = −f · x                     [J]
+
+use super::{Acts, finite};
+use crate::point::{Motion, add, dot, first};
+use crate::system::ParticleId;
+
+/// Constant force on one particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointForce {
+    /// The particle it acts on.
+    pub particle: ParticleId,
+    /// f [N]; the third component is ignored in two dimensions.
+    pub force: [f64; 3],
+}
+
+impl Acts for PointForce {
+    fn add<const D: usize>(&self, _: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        add(Q, self.particle, first::<D>(&self.force));
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        -dot(first::<D>(&self.force), motion.x(self.particle))
+    }
+
+    fn power<const D: usize>(&self, _: Motion<'_, D>) -> f64 {
+        0.0
+    }
+
+    fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.particle]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.force.iter().try_for_each(|&component| finite("a point force", component))
+    }
+}

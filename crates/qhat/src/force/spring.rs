@@ -1,0 +1,87 @@
+//! Damped Hookean spring (the source's external force, its damping sign corrected; method notes, slips).
+//!
+//!     L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
+//!     F_a = −[ks (|L| − r) + kd L̇·n] n,   F_b = −F_a           [N]
+//!     V   = ½ ks (|L| − r)²                                     [J]
+//!     power of the damper = −kd (L̇·n)²                          [W]
+//!
+//! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
+//! the spring then pulls nowhere (its force is zero), exact for r = 0.
+
+use super::{Acts, not_negative};
+use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
+use crate::system::ParticleId;
+
+/// Damped Hookean spring between two particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// One end.
+    pub a: ParticleId,
+    /// The other end.
+    pub b: ParticleId,
+    /// ks [N/m], not negative.
+    pub stiffness: f64,
+    /// kd [N·s/m], not negative.
+    pub damping: f64,
+    /// r, the length at which it does not pull [m], not negative.
+    pub rest: f64,
+}
+
+/// |L|, L̇·n and n of one spring.
+struct Stretch<const D: usize> {
+    length: f64,
+    rate: f64,
+    n: Point<D>,
+}
+
+impl Spring {
+    fn stretch<const D: usize>(&self, motion: Motion<'_, D>) -> Option<Stretch<D>> {
+        let L = minus(motion.x(self.a), motion.x(self.b));
+        let Ld = minus(motion.v(self.a), motion.v(self.b));
+        let length = norm(L);
+        if length == 0.0 {
+            return None;
+        }
+        let n = scaled(1.0 / length, L);
+        Some(Stretch { length, rate: dot(Ld, n), n })
+    }
+}
+
+impl Acts for Spring {
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        if let Some(Stretch { length, rate, n }) = self.stretch(motion) {
+            let pull = self.stiffness * (length - self.rest) + self.damping * rate;
+            add(Q, self.a, scaled(-pull, n));
+            add(Q, self.b, scaled(pull, n));
+        }
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        let length = norm(minus(motion.x(self.a), motion.x(self.b)));
+        0.5 * self.stiffness * (length - self.rest) * (length - self.rest)
+    }
+
+    fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        self.stretch(motion).map_or(0.0, |stretch| -self.damping * stretch.rate * stretch.rate)
+    }
+
+    fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+        let Some(Stretch { length, .. }) = self.stretch(motion) else { return };
+        // Along the spring ks, across it pull/|L|; the row sum counts both ends.
+        let across = self.stiffness * (length - self.rest).abs() / length;
+        let both_ends = 2.0 * self.stiffness.max(across);
+        bound(self.a, both_ends, 2.0 * self.damping);
+        bound(self.b, both_ends, 2.0 * self.damping);
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.a, self.b]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        not_negative("the stiffness of a spring", self.stiffness)?;
+        not_negative("the damping of a spring", self.damping)?;
+        not_negative("the rest length of a spring", self.rest)?;
+        if self.a == self.b { Err("a spring needs two different particles".into()) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,157 @@
+//! From one state to the next: one method a file.
+//!
+//! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
+
+mod control;
+mod euler;
+mod projection;
+mod rattle;
+mod rk4;
+mod symplectic_euler;
+
+use crate::error::StepError;
+use crate::measure::{self, Drift};
+use crate::multiplier::Equation;
+use crate::point::Motion;
+use crate::report::{Projection, StepReport};
+use crate::settings::{Integrator, Settings};
+use crate::state::State;
+use crate::system::{System, in_dimension};
+
+/// A constraint off by this many times its own size is beyond recognition: what follows would only be larger numbers.
+const DIVERGED: f64 = 1e3;
+
+/// Arrays that steps write in, made once for a system. Holds nothing that changes a result.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    equation: Equation,
+    /// The state being tried.
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    /// The q whose A the solver holds factored without ε; empty if that is not known.
+    factored_at: Vec<f64>,
+    rk4: rk4::Stages,
+    rattle: rattle::Scratch,
+}
+
+impl Workspace {
+    /// Arrays for one system.
+    pub fn new(system: &System) -> Self {
+        let coordinates = system.coordinate_count();
+        Workspace {
+            equation: Equation::new(system),
+            q: vec![0.0; coordinates],
+            qd: vec![0.0; coordinates],
+            factored_at: Vec::new(),
+            rk4: rk4::Stages::new(coordinates),
+            rattle: rattle::Scratch::new(system),
+        }
+    }
+}
+
+/// Carries a state over one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
+///
+/// # Errors
+/// See [`StepError`]. The state is then the last good one: where the step began, or for an adaptive integrator the end of
+/// its last substep.
+pub fn step(
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    workspace: &mut Workspace,
+) -> Result<StepReport, StepError> {
+    step_for(system, state, settings, settings.h, workspace)
+}
+
+/// The same over a frame of another length [s], for adaptive integrators.
+pub(crate) fn step_for(
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    frame: f64,
+    workspace: &mut Workspace,
+) -> Result<StepReport, StepError> {
+    settings.check()?;
+    in_dimension!(system.dimension, D => match settings.integrator {
+        Integrator::Euler => fixed::<D>(system, state, frame, workspace, euler::step::<D>),
+        Integrator::SymplecticEuler => fixed::<D>(system, state, frame, workspace, symplectic_euler::step::<D>),
+        Integrator::Rk4 => fixed::<D>(system, state, frame, workspace, rk4::step::<D>),
+        Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
+    })
+}
+
+/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already.
+///
+/// # Errors
+/// [`StepError::NotSatisfied`] where no such positions are found; the state stays as it was.
+pub fn project(
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    workspace: &mut Workspace,
+) -> Result<Projection, StepError> {
+    settings.check()?;
+    workspace.factored_at.clear();
+    in_dimension!(system.dimension, D => projection::project::<D>(system, state, settings, workspace))
+}
+
+/// What a fixed-step method says of the step it wrote to the workspace [J].
+struct StepWork {
+    dissipation: f64,
+    stabilization: f64,
+}
+
+type FixedStep = fn(&System, &State, f64, &mut Workspace) -> StepWork;
+
+/// One step of a method without substeps: try, check, keep.
+fn fixed<const D: usize>(
+    system: &System,
+    state: &mut State,
+    h: f64,
+    workspace: &mut Workspace,
+    method: FixedStep,
+) -> Result<StepReport, StepError> {
+    workspace.factored_at.clear();
+    let factorizations = workspace.equation.solver.factorizations;
+    let work = method(system, state, h, workspace);
+    let warnings = workspace.equation.warnings(system);
+    let drift = examine::<D>(system, state.t, workspace)?;
+    std::mem::swap(&mut state.q, &mut workspace.q);
+    std::mem::swap(&mut state.qd, &mut workspace.qd);
+    state.t += h;
+    state.work.dissipation += work.dissipation;
+    state.work.stabilization += work.stabilization;
+    state.carry = None;
+    Ok(StepReport {
+        substeps: 1,
+        factorizations: workspace.equation.solver.factorizations - factorizations,
+        smallest_substep: h,
+        max_residual: drift.residual,
+        max_residual_rate: drift.residual_rate,
+        max_relative_length_error: drift.relative_length,
+        energy: measure::energy(system, state),
+        warnings,
+        ..StepReport::default()
+    })
+}
+
+/// Refuses a tried state that is not finite or has diverged; t is that of the last good state.
+fn examine<const D: usize>(system: &System, t: f64, workspace: &mut Workspace) -> Result<Drift, StepError> {
+    check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
+    let motion = Motion::<D> { q: &workspace.q, qd: &workspace.qd };
+    workspace.equation.constrain(system, motion);
+    let drift = measure::drift(system, &workspace.equation.rows, motion);
+    if drift.relative > DIVERGED {
+        let row = system.row_names[drift.worst_row].clone();
+        return Err(StepError::Diverged { time: t, row, relative: drift.relative });
+    }
+    Ok(drift)
+}
+
+fn check_finite<const D: usize>(system: &System, t: f64, q: &[f64], qd: &[f64]) -> Result<(), StepError> {
+    let lost = q.iter().zip(qd).position(|(x, v)| !x.is_finite() || !v.is_finite());
+    match lost {
+        Some(k) => Err(StepError::NotFinite { time: t, particle: system.particle_names[k / D].clone() }),
+        None => Ok(()),
+    }
+}

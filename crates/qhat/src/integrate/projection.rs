@@ -1,0 +1,151 @@
+//! Projection onto C(q) = 0 and Ċ = 0, in the mass metric.
+//!
+//!     q ← q − W Jᵀ A⁻¹ C,  repeated until every |C| is within tolerance
+//!     q̇ ← q̇ − W Jᵀ A⁻¹ (J q̇)
+//!
+//! Newton's method with the step halved while it does not bring the constraints nearer. Fails where no q satisfies them, or
+//! where the start is too far away.
+
+use super::Workspace;
+use crate::constraint::Jacobian;
+use crate::error::StepError;
+use crate::multiplier::Equation;
+use crate::point::{Motion, add, block, dot, scaled};
+use crate::report::Projection;
+use crate::settings::Settings;
+use crate::state::State;
+use crate::system::{ParticleId, System};
+
+/// Newton converges quadratically, in some five iterations; from far away it takes more.
+const MAX_ITERATIONS: usize = 60;
+
+/// Halvings of one Newton step.
+const MAX_HALVINGS: usize = 12;
+
+/// |Ċ| below this times the fastest particle's speed is roundoff, not inconsistency.
+const CONSISTENT_RATE: f64 = 1e-13;
+
+pub(super) fn project<const D: usize>(
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    workspace: &mut Workspace,
+) -> Result<Projection, StepError> {
+    let Workspace { equation, q, qd, .. } = workspace;
+    q.copy_from_slice(&state.q);
+    qd.copy_from_slice(&state.qd);
+    let (residual_before, iterations) = positions::<D>(system, state.t, settings, equation, q, qd)?;
+    velocities::<D>(system, equation, q, qd);
+    let report = Projection {
+        moved: farthest::<D>(q, &state.q),
+        velocity_changed: farthest::<D>(qd, &state.qd),
+        residual_before,
+        iterations,
+    };
+    if report.moved > 0.0 || report.velocity_changed > 0.0 {
+        state.q.copy_from_slice(q);
+        state.qd.copy_from_slice(qd);
+        state.carry = None;
+    }
+    Ok(report)
+}
+
+/// Brings q onto C = 0; returns max |C| before and the number of iterations.
+fn positions<const D: usize>(
+    system: &System,
+    t: f64,
+    settings: &Settings,
+    equation: &mut Equation,
+    q: &mut [f64],
+    qd: &[f64],
+) -> Result<(f64, usize), StepError> {
+    equation.constrain(system, Motion::<D> { q, qd });
+    let before = equation.rows.C.iter().fold(0.0, |most: f64, C| most.max(C.abs()));
+    let mut delta = vec![0.0; equation.rows.C.len()];
+    let mut start = q.to_vec();
+    for iteration in 0..MAX_ITERATIONS {
+        let off = worst_row(system, &equation.rows.C).1;
+        if off <= attainable(system, settings, q) {
+            return Ok((before, iteration));
+        }
+        equation.factor::<D>(system, 0.0);
+        equation.solver.solve(&system.matrix.pattern, &equation.rows.C, &mut delta);
+        let J = equation.rows.J.clone();
+        start.copy_from_slice(q);
+        let mut fraction = 1.0;
+        for _ in 0..MAX_HALVINGS {
+            q.copy_from_slice(&start);
+            add_impulse::<D>(&J, &system.inverse_mass, &delta, -fraction, q);
+            equation.constrain(system, Motion::<D> { q, qd });
+            if worst_row(system, &equation.rows.C).1 < off {
+                break;
+            }
+            fraction *= 0.5;
+        }
+        if worst_row(system, &equation.rows.C).1 >= off {
+            break;
+        }
+    }
+    let (row, _) = worst_row(system, &equation.rows.C);
+    let residual = equation.rows.C.get(row).copied().unwrap_or(0.0);
+    if worst_row(system, &equation.rows.C).1 <= attainable(system, settings, q) {
+        return Ok((before, MAX_ITERATIONS));
+    }
+    Err(StepError::NotSatisfied { time: t, row: system.row_names[row].clone(), residual })
+}
+
+/// Takes out of q̇ what would violate Ċ = 0; nothing if it is roundoff.
+fn velocities<const D: usize>(system: &System, equation: &mut Equation, q: &[f64], qd: &mut [f64]) {
+    equation.constrain(system, Motion::<D> { q, qd });
+    let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
+    let fastest = fastest.fold(0.0, f64::max).sqrt();
+    let rows = equation.rows.Cd.iter().zip(&system.row_scale);
+    let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, f64::max);
+    if rate * system.extent > CONSISTENT_RATE * fastest {
+        equation.factor::<D>(system, 0.0);
+        let mut nu = vec![0.0; equation.rows.Cd.len()];
+        equation.solver.solve(&system.matrix.pattern, &equation.rows.Cd, &mut nu);
+        add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &nu, -1.0, qd);
+    }
+}
+
+/// out += factor W Jᵀ μ.
+pub(super) fn add_impulse<const D: usize>(J: &Jacobian, W: &[f64], mu: &[f64], factor: f64, out: &mut [f64]) {
+    for (row, &multiplier) in mu.iter().enumerate() {
+        for e in J.layout.start[row]..J.layout.start[row + 1] {
+            let particle = J.layout.particle[e];
+            let w = W[particle.0];
+            if w > 0.0 {
+                add(out, particle, scaled(factor * w * multiplier, J.entry::<D>(e)));
+            }
+        }
+    }
+}
+
+/// The row with the largest |C| over its scale, and that number; NaN counts as infinite.
+pub(super) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
+    let mut worst = (0, 0.0);
+    for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
+        let relative = residual.abs() / scale;
+        if relative.is_nan() {
+            return (row, f64::INFINITY);
+        }
+        if relative > worst.1 {
+            worst = (row, relative);
+        }
+    }
+    worst
+}
+
+/// Where to stop: half the relative tolerance asked for, so that what is measured afterwards keeps the promise after
+/// rounding; or what the roundoff of the coordinates allows, where that is more.
+pub(super) fn attainable(system: &System, settings: &Settings, q: &[f64]) -> f64 {
+    let farthest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    // A coordinate is rounded by ε|q|; a difference of two of them and its square root add a few more.
+    (0.5 * settings.constraint_tolerance).max(4.0 * f64::EPSILON * farthest / system.extent)
+}
+
+fn farthest<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
+    let distances = a.chunks_exact(D).zip(b.chunks_exact(D));
+    distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, f64::max).sqrt()
+}

@@ -1,0 +1,39 @@
+//! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and the
+//! rank is the number of pivots before they fall to the roundoff of what was subtracted.
+//! Source: Higham, Analysis of the Cholesky decomposition of a semi-definite matrix (1990).
+
+/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is consumed.
+pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
+    // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
+    // amplified by the conditioning of the rows already taken, for which three digits are allowed.
+    let tolerance = 1e3 * f64::EPSILON * (n.max(1) as f64);
+    let mut active: Vec<usize> = (0..n).collect();
+    let mut rank = 0;
+    while let Some((place, pivot)) = largest(&active, |i| matrix[i * n + i]) {
+        let d = matrix[pivot * n + pivot];
+        if d.is_nan() || d <= tolerance {
+            break;
+        }
+        active.swap_remove(place);
+        rank += 1;
+        for &i in &active {
+            let l = matrix[i * n + pivot] / d;
+            if l != 0.0 {
+                for &j in &active {
+                    matrix[i * n + j] -= l * matrix[pivot * n + j];
+                }
+            }
+        }
+    }
+    rank
+}
+
+fn largest(active: &[usize], value: impl Fn(usize) -> f64) -> Option<(usize, usize)> {
+    let mut best: Option<(usize, usize)> = None;
+    for (place, &i) in active.iter().enumerate() {
+        if best.is_none_or(|(_, j)| value(i) > value(j)) {
+            best = Some((place, i));
+        }
+    }
+    best
+}

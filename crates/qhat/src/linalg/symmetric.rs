@@ -1,0 +1,105 @@
+//! Symmetric sparse matrices: the lower triangle by rows, each row's columns ascending, its diagonal last.
+
+/// Which entries of the lower triangle may be nonzero. Every diagonal entry is present.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Pattern {
+    pub(crate) start: Vec<usize>,
+    pub(crate) column: Vec<usize>,
+}
+
+impl Pattern {
+    /// From the columns of each row; the diagonal and the order are seen to here.
+    pub(crate) fn from_rows(rows: Vec<Vec<usize>>) -> Self {
+        let mut pattern = Pattern { start: vec![0], column: Vec::new() };
+        for (i, mut columns) in rows.into_iter().enumerate() {
+            columns.retain(|&j| j < i);
+            columns.sort_unstable();
+            columns.dedup();
+            columns.push(i);
+            pattern.column.extend(columns);
+            pattern.start.push(pattern.column.len());
+        }
+        pattern
+    }
+
+    /// Number of rows.
+    pub(crate) fn order(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Number of stored entries.
+    pub(crate) fn len(&self) -> usize {
+        self.column.len()
+    }
+
+    /// Where entry (i, j), j ≤ i, is stored.
+    pub(crate) fn slot(&self, i: usize, j: usize) -> Option<usize> {
+        let row = &self.column[self.start[i]..self.start[i + 1]];
+        row.binary_search(&j).ok().map(|k| self.start[i] + k)
+    }
+
+    /// The slot of the diagonal entry of row i.
+    #[inline(always)]
+    pub(crate) fn diagonal(&self, i: usize) -> usize {
+        self.start[i + 1] - 1
+    }
+
+    /// out = A x for the matrix with this pattern and these values.
+    pub(crate) fn multiply(&self, values: &[f64], x: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for i in 0..self.order() {
+            let diagonal = self.diagonal(i);
+            let mut sum = values[diagonal] * x[i];
+            for slot in self.start[i]..diagonal {
+                let j = self.column[slot];
+                sum += values[slot] * x[j];
+                out[j] += values[slot] * x[i];
+            }
+            out[i] += sum;
+        }
+    }
+}
+
+/// A symmetric sparse matrix, as [`crate::Terms`] shows it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SymmetricMatrix {
+    pub(crate) pattern: Pattern,
+    pub(crate) values: Vec<f64>,
+}
+
+impl SymmetricMatrix {
+    /// Number of rows.
+    pub fn order(&self) -> usize {
+        self.pattern.order()
+    }
+
+    /// Number of entries of the lower triangle that may be nonzero.
+    pub fn stored(&self) -> usize {
+        self.pattern.len()
+    }
+
+    /// Entry (i, j); zero where the pattern has none.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (row, column) = if j <= i { (i, j) } else { (j, i) };
+        self.pattern.slot(row, column).map_or(0.0, |slot| self.values[slot])
+    }
+
+    /// The whole matrix, row after row: for looking at, and for tests.
+    pub fn to_dense(&self) -> Vec<f64> {
+        let m = self.order();
+        let mut dense = vec![0.0; m * m];
+        for i in 0..m {
+            for slot in self.pattern.start[i]..self.pattern.start[i + 1] {
+                let j = self.pattern.column[slot];
+                dense[i * m + j] = self.values[slot];
+                dense[j * m + i] = self.values[slot];
+            }
+        }
+        dense
+    }
+
+    /// out = A x.
+    pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
+        self.pattern.multiply(&self.values, x, out);
+    }
+}

@@ -1,0 +1,99 @@
+//! Energy, residuals and drift of a motion.
+//!
+//!     T = ½ Σ m_i v_i·v_i over the particles that can move,   V = Σ of the forces' potentials     [J]
+//!     missing = T + V − (T + V at t = 0) − work of everything that crossed the border
+
+use crate::constraint::{Constraint, Rows};
+use crate::force::Acts;
+use crate::point::{Motion, block, dot, minus, norm};
+use crate::state::{State, Work};
+use crate::system::{ParticleId, System, in_dimension};
+
+/// The energy account [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// T.
+    pub kinetic: f64,
+    /// V, of gravity, springs, point forces and the mouse spring.
+    pub potential: f64,
+    /// What has crossed the border since t = 0.
+    pub work: Work,
+}
+
+impl Energy {
+    /// T + V.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+
+    /// T + V less all that came in: constant for an exact integrator.
+    pub fn balance(&self) -> f64 {
+        self.total() - self.work.total()
+    }
+}
+
+/// The energy account of a state.
+pub(crate) fn energy(system: &System, state: &State) -> Energy {
+    in_dimension!(system.dimension, D => {
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
+    })
+}
+
+fn kinetic<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+    0.5 * moving.map(|i| system.mass[i.0] * dot(motion.v(i), motion.v(i))).sum::<f64>()
+}
+
+pub(crate) fn potential<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    system.forces.iter().map(|force| force.potential(motion, &system.mass)).sum()
+}
+
+/// Power of all forces without a potential [W].
+pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    system.forces.iter().map(|force| force.power(motion)).sum()
+}
+
+/// The work the applied forces could do over the length of the system [J]: a scale for energies that has no zero point.
+pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
+    let mut Q = vec![0.0; system.coordinate_count()];
+    in_dimension!(system.dimension, D => {
+        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd }, &mut Q);
+        let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+        system.extent * moving.map(|i| norm(block::<D>(&Q, i))).sum::<f64>()
+    })
+}
+
+/// What is left of C = 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Drift {
+    /// max |C|.
+    pub(crate) residual: f64,
+    /// max |Ċ|.
+    pub(crate) residual_rate: f64,
+    /// max |C| over the row's own scale, and the row.
+    pub(crate) relative: f64,
+    pub(crate) worst_row: usize,
+    /// max ||d| − r|/r over the rods.
+    pub(crate) relative_length: f64,
+}
+
+/// Reads the drift off evaluated rows.
+pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion<'_, D>) -> Drift {
+    let mut drift = Drift::default();
+    for row in 0..rows.C.len() {
+        drift.residual = drift.residual.max(rows.C[row].abs());
+        drift.residual_rate = drift.residual_rate.max(rows.Cd[row].abs());
+        let relative = rows.C[row].abs() / system.row_scale[row];
+        if relative > drift.relative {
+            (drift.relative, drift.worst_row) = (relative, row);
+        }
+    }
+    for named in &system.constraints {
+        if let Constraint::Distance(rod) = &named.constraint {
+            let length = norm(minus(motion.x(rod.a), motion.x(rod.b)));
+            drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
+        }
+    }
+    drift
+}

@@ -1,0 +1,222 @@
+//! Solving (A + ε I) λ = b, whatever the rank of A.
+//!
+//! Rows are scaled to a unit diagonal first, M = S (A + ε I) S with S = diag(A + ε I)^(−½), so that rows of different units
+//! and very different masses are judged alike. A plain LDLᵀ of M is tried; where a pivot comes out tiny, or the solution
+//! does not satisfy the equation, M is singular to working precision (redundant rows) and G = (M + δ I)⁻¹ takes over:
+//!
+//!     null(y) = lim Pᵏ y,  P = δ G       P keeps the null space of M and shrinks its range by δ/(σ + δ)
+//!     x ← x + G (b − null(b) − M x)      refinement, from 0: stays in the range of M, so it goes to the least norm x
+//!     x ← x − null(x)                    removes the roundoff that G has amplified by 1/δ in the null space
+//!
+//! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
+//! how far the rows contradict each other.
+
+use crate::linalg::{Factor, Pattern, rank};
+
+/// A pivot of the scaled matrix below this is taken for zero. Pivots of regular systems are about the smallest ratio of
+/// inverse masses (1e-9 for a load of a billion beads); roundoff leaves some 1e-15 of a zero.
+const TINY_PIVOT: f64 = 1e-12;
+
+/// δ. Refinement shrinks the error by δ/σ a pass, so δ must lie well below the eigenvalues σ that matter; roundoff is
+/// amplified by 1/δ, so it must lie well above 1e-16.
+const REGULARIZATION: f64 = 1e-8;
+
+/// A solution that misses its right side by more than this, relative, was not solved by the plain factor.
+const ACCEPTED_RESIDUAL: f64 = 1e-9;
+
+/// Where refinement has arrived: a few times roundoff.
+const REFINED: f64 = 1e-14;
+
+/// Refinement and null(·) converge in two to five passes where they converge; they must not go on for ever elsewhere.
+const PASSES: usize = 10;
+
+/// Above this order the rank is not computed (the work grows with its cube), only that it is deficient is said.
+const RANK_UP_TO: usize = 1200;
+
+/// (A + ε I), scaled and factored.
+#[derive(Clone, Debug)]
+pub(crate) struct MultiplierSolver {
+    factor: Factor,
+    scale: Vec<f64>,
+    /// M, in the slots of A.
+    scaled: Vec<f64>,
+    /// Whether G is in use.
+    pub(crate) deficient: bool,
+    dropped: usize,
+    /// Relative part of the last right side that no λ can meet.
+    pub(crate) contradiction: f64,
+    pub(crate) factorizations: usize,
+    x: Vec<f64>,
+    r: Vec<f64>,
+    y: Vec<f64>,
+    b: Vec<f64>,
+}
+
+impl MultiplierSolver {
+    pub(crate) fn new(pattern: &Pattern) -> Self {
+        let m = pattern.order();
+        MultiplierSolver {
+            factor: Factor::new(pattern),
+            scale: vec![0.0; m],
+            scaled: vec![0.0; pattern.len()],
+            deficient: false,
+            dropped: 0,
+            contradiction: 0.0,
+            factorizations: 0,
+            x: vec![0.0; m],
+            r: vec![0.0; m],
+            y: vec![0.0; m],
+            b: vec![0.0; m],
+        }
+    }
+
+    /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) are left out: their λ is zero.
+    pub(crate) fn factor(&mut self, pattern: &Pattern, A: &[f64], epsilon: f64, inert: &[bool]) {
+        self.dropped = 0;
+        for i in 0..self.scale.len() {
+            let diagonal = A[pattern.diagonal(i)] + epsilon;
+            let takes_part = !inert[i] && diagonal > 0.0;
+            self.scale[i] = if takes_part { 1.0 / diagonal.sqrt() } else { 0.0 };
+            self.dropped += usize::from(!takes_part);
+        }
+        for i in 0..self.scale.len() {
+            let diagonal = pattern.diagonal(i);
+            for slot in pattern.start[i]..diagonal {
+                self.scaled[slot] = self.scale[i] * A[slot] * self.scale[pattern.column[slot]];
+            }
+            self.scaled[diagonal] = 1.0;
+        }
+        self.deficient = false;
+        self.factorizations += 1;
+        let smallest = self.factor.factor(pattern, &self.scaled, 0.0);
+        if smallest.is_nan() || smallest < TINY_PIVOT {
+            self.regularize(pattern);
+        }
+    }
+
+    fn regularize(&mut self, pattern: &Pattern) {
+        self.deficient = true;
+        self.factorizations += 1;
+        self.factor.factor(pattern, &self.scaled, REGULARIZATION);
+    }
+
+    /// λ ← (A + ε I)⁻¹ b, or the least-norm λ that comes nearest where the matrix is singular.
+    pub(crate) fn solve(&mut self, pattern: &Pattern, b: &[f64], lambda: &mut [f64]) {
+        for i in 0..b.len() {
+            self.b[i] = self.scale[i] * b[i];
+        }
+        self.contradiction = 0.0;
+        if !self.deficient && !self.solve_plain(pattern) {
+            self.regularize(pattern);
+        }
+        if self.deficient {
+            self.solve_regularized(pattern);
+        }
+        for i in 0..b.len() {
+            lambda[i] = self.scale[i] * self.x[i];
+        }
+    }
+
+    /// Whether the plain factor solved it.
+    fn solve_plain(&mut self, pattern: &Pattern) -> bool {
+        self.x.copy_from_slice(&self.b);
+        self.factor.solve(&mut self.x);
+        self.residual(pattern);
+        let (residual, size) = (largest(&self.r), largest(&self.b));
+        // A right side that is not finite is not the matrix's fault; the step will report it.
+        residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
+    }
+
+    fn solve_regularized(&mut self, pattern: &Pattern) {
+        let size = largest(&self.b);
+        self.y.copy_from_slice(&self.b);
+        self.keep_null_space(size);
+        for i in 0..self.b.len() {
+            self.b[i] -= self.y[i];
+        }
+        self.contradiction = if size > 0.0 { largest(&self.y) / size } else { 0.0 };
+
+        self.x.fill(0.0);
+        let mut last = f64::INFINITY;
+        for _ in 0..PASSES {
+            self.residual(pattern);
+            let residual = largest(&self.r);
+            if residual.is_nan() || residual <= REFINED * size || residual > 0.5 * last {
+                break;
+            }
+            last = residual;
+            self.factor.solve(&mut self.r);
+            for i in 0..self.x.len() {
+                self.x[i] += self.r[i];
+            }
+        }
+        self.y.copy_from_slice(&self.x);
+        self.keep_null_space(largest(&self.x));
+        for i in 0..self.x.len() {
+            self.x[i] -= self.y[i];
+        }
+    }
+
+    /// y ← null(y): P until nothing more goes; what goes is measured against `size`, the largest |y| at the start.
+    fn keep_null_space(&mut self, size: f64) {
+        for _ in 0..PASSES {
+            self.r.copy_from_slice(&self.y);
+            self.factor.solve(&mut self.r);
+            let mut gone = 0.0_f64;
+            for (y, r) in self.y.iter_mut().zip(&self.r) {
+                let kept = REGULARIZATION * r;
+                gone = gone.max((*y - kept).abs());
+                *y = kept;
+            }
+            if gone <= f64::EPSILON * size {
+                break;
+            }
+        }
+    }
+
+    /// r ← b − M x.
+    fn residual(&mut self, pattern: &Pattern) {
+        pattern.multiply(&self.scaled, &self.x, &mut self.r);
+        for i in 0..self.r.len() {
+            self.r[i] = self.b[i] - self.r[i];
+        }
+    }
+
+    /// Whether a row took no part in the last factorization.
+    pub(crate) fn is_left_out(&self, row: usize) -> bool {
+        self.scale[row] == 0.0
+    }
+
+    /// Rank of A at the last factorization; `None` where computing it would take too long.
+    pub(crate) fn rank(&self, pattern: &Pattern) -> Option<usize> {
+        let m = pattern.order();
+        if !self.deficient {
+            return Some(m - self.dropped);
+        }
+        if m > RANK_UP_TO {
+            return None;
+        }
+        let mut dense = vec![0.0; m * m];
+        for i in 0..m {
+            for slot in pattern.start[i]..pattern.start[i + 1] {
+                let j = pattern.column[slot];
+                dense[i * m + j] = self.scaled[slot];
+                dense[j * m + i] = self.scaled[slot];
+            }
+            dense[i * m + i] = if self.scale[i] > 0.0 { 1.0 } else { 0.0 };
+        }
+        Some(rank(m, dense))
+    }
+}
+
+/// max |x_i|; NaN if any is.
+fn largest(x: &[f64]) -> f64 {
+    let mut largest = 0.0_f64;
+    for &value in x {
+        if value.is_nan() {
+            return value;
+        }
+        largest = largest.max(value.abs());
+    }
+    largest
+}

@@ -1,0 +1,76 @@
+//! Points and vectors of D components, and the motion they are read from.
+
+use crate::system::ParticleId;
+
+/// A point or vector in D dimensions.
+pub(crate) type Point<const D: usize> = [f64; D];
+
+/// a − b.
+#[inline(always)]
+pub(crate) fn minus<const D: usize>(a: Point<D>, b: Point<D>) -> Point<D> {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+/// s a.
+#[inline(always)]
+pub(crate) fn scaled<const D: usize>(s: f64, a: Point<D>) -> Point<D> {
+    std::array::from_fn(|k| s * a[k])
+}
+
+/// a · b, summed from the first component on.
+#[inline(always)]
+pub(crate) fn dot<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
+    let mut sum = a[0] * b[0];
+    for k in 1..D {
+        sum += a[k] * b[k];
+    }
+    sum
+}
+
+/// |a|.
+#[inline(always)]
+pub(crate) fn norm<const D: usize>(a: Point<D>) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The first D of three stored components (the third is 0 in two dimensions).
+#[inline(always)]
+pub(crate) fn first<const D: usize>(a: &[f64; 3]) -> Point<D> {
+    std::array::from_fn(|k| a[k])
+}
+
+/// Where every particle is and how it moves: q and q̇, flat, d·n each.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'a, const D: usize> {
+    pub(crate) q: &'a [f64],
+    pub(crate) qd: &'a [f64],
+}
+
+impl<const D: usize> Motion<'_, D> {
+    /// x of one particle.
+    #[inline(always)]
+    pub(crate) fn x(&self, particle: ParticleId) -> Point<D> {
+        block(self.q, particle)
+    }
+
+    /// v of one particle.
+    #[inline(always)]
+    pub(crate) fn v(&self, particle: ParticleId) -> Point<D> {
+        block(self.qd, particle)
+    }
+}
+
+/// The D components that belong to one particle in a flat array.
+#[inline(always)]
+pub(crate) fn block<const D: usize>(flat: &[f64], particle: ParticleId) -> Point<D> {
+    let start = particle.0 * D;
+    std::array::from_fn(|k| flat[start + k])
+}
+
+/// flat[particle] += a.
+#[inline(always)]
+pub(crate) fn add<const D: usize>(flat: &mut [f64], particle: ParticleId, a: Point<D>) {
+    for (target, component) in flat[particle.0 * D..][..D].iter_mut().zip(a) {
+        *target += component;
+    }
+}

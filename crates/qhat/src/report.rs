@@ -1,0 +1,95 @@
+//! What a step tells.
+
+use crate::measure::Energy;
+use std::fmt;
+
+/// One frame or step in numbers. Maxima are over its substeps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Substeps taken (1 for a step of a fixed-step integrator).
+    pub substeps: usize,
+    /// Substeps tried and taken back.
+    pub rejected: usize,
+    /// Factorizations of A.
+    pub factorizations: usize,
+    /// Newton iterations on C(q) = 0.
+    pub iterations: usize,
+    /// The smallest substep [s].
+    pub smallest_substep: f64,
+    /// max |C| over the rows [C].
+    pub max_residual: f64,
+    /// max |Ċ| over the rows [C/s].
+    pub max_residual_rate: f64,
+    /// max ||d| − r|/r over the rods.
+    pub max_relative_length_error: f64,
+    /// Energies at the end.
+    pub energy: Energy,
+    /// What a user should know.
+    pub warnings: Vec<Warning>,
+}
+
+impl StepReport {
+    /// Takes the next step's report into this one.
+    pub(crate) fn absorb(&mut self, next: StepReport) {
+        self.smallest_substep =
+            if self.substeps == 0 { next.smallest_substep } else { self.smallest_substep.min(next.smallest_substep) };
+        self.substeps += next.substeps;
+        self.rejected += next.rejected;
+        self.factorizations += next.factorizations;
+        self.iterations += next.iterations;
+        self.max_residual = self.max_residual.max(next.max_residual);
+        self.max_residual_rate = self.max_residual_rate.max(next.max_residual_rate);
+        self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
+        self.energy = next.energy;
+        for warning in next.warnings {
+            self.warn(warning);
+        }
+    }
+
+    /// Adds a warning unless it is there already.
+    pub(crate) fn warn(&mut self, warning: Warning) {
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+}
+
+/// A condition that did not stop the step.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
+    Singular,
+    /// Rows whose gradient vanishes here, so that no multiplier can act through them.
+    NoGradient {
+        /// Their names.
+        rows: Vec<String>,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Warning::Singular => f.write_str(
+                "A = J W Jᵀ is singular: some constraints repeat what others say; the multipliers shown are the smallest that do it",
+            ),
+            Warning::NoGradient { rows } => write!(
+                f,
+                "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it (diagonal drag hides this)",
+                rows.join(", ")
+            ),
+        }
+    }
+}
+
+/// What it took to bring a state onto C = 0 and Ċ = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Projection {
+    /// The farthest any particle was moved [m]; 0 if the state was consistent.
+    pub moved: f64,
+    /// The largest change of a particle's velocity [m/s]; 0 if it was consistent.
+    pub velocity_changed: f64,
+    /// max |C| before [C].
+    pub residual_before: f64,
+    /// Newton iterations on C(q) = 0.
+    pub iterations: usize,
+}

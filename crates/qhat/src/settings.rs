@@ -1,0 +1,145 @@
+//! Every number a user may tune, with unit, default and valid range.
+
+use crate::error::SettingsError;
+use std::fmt;
+use std::str::FromStr;
+
+/// How a state is carried over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// The source's explicit Euler, order 1. Drifts, and gains energy: it shows why the two stability menus exist.
+    Euler,
+    /// Velocities first, then positions with the new velocities, order 1. Keeps energy bounded where Euler does not.
+    SymplecticEuler,
+    /// The classical Runge–Kutta method, order 4. Drifts slowly off the constraints.
+    Rk4,
+    /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
+    #[default]
+    Rattle,
+}
+
+impl Integrator {
+    /// All of them.
+    pub const ALL: [Integrator; 4] =
+        [Integrator::Euler, Integrator::SymplecticEuler, Integrator::Rk4, Integrator::Rattle];
+
+    /// The name in scene files and commands.
+    pub fn name(self) -> &'static str {
+        match self {
+            Integrator::Euler => "euler",
+            Integrator::SymplecticEuler => "symplectic-euler",
+            Integrator::Rk4 => "rk4",
+            Integrator::Rattle => "rattle",
+        }
+    }
+
+    /// Whether it chooses its own substeps within a frame of h (otherwise it takes steps of exactly h).
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Integrator::Rattle)
+    }
+
+    /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of [`Feedback`]).
+    pub fn projects(self) -> bool {
+        matches!(self, Integrator::Rattle)
+    }
+
+    /// Global order of convergence in h.
+    pub fn order(self) -> u32 {
+        match self {
+            Integrator::Euler | Integrator::SymplecticEuler => 1,
+            Integrator::Rattle => 2,
+            Integrator::Rk4 => 4,
+        }
+    }
+}
+
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Integrator {
+    type Err = SettingsError;
+
+    fn from_str(name: &str) -> Result<Self, SettingsError> {
+        let found = Integrator::ALL.into_iter().find(|integrator| integrator.name() == name);
+        found.ok_or_else(|| SettingsError::UnknownIntegrator { name: name.to_owned() })
+    }
+}
+
+/// What keeps a drifting integrator near C = 0, and the source's two menus. Integrators that project use none of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Feedback {
+    /// ks [1/s²], ≥ 0, default 0: pulls C to zero.
+    pub ks: f64,
+    /// kd [1/s], ≥ 0, default 0: pulls Ċ to zero.
+    pub kd: f64,
+    /// ε [units of A], ≥ 0, default 0: added to the diagonal of A, so that a singular A can be solved; softens every row.
+    pub diagonal_drag: f64,
+    /// In [0, 1), default 0: the constraint force is scaled by s = 1 − elasticity.
+    pub elasticity: f64,
+}
+
+impl Feedback {
+    /// The bare equation.
+    pub const NONE: Feedback = Feedback { ks: 0.0, kd: 0.0, diagonal_drag: 0.0, elasticity: 0.0 };
+
+    /// Whether every number is in its range.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        let terms = [("ks", self.ks), ("kd", self.kd), ("diagonal_drag", self.diagonal_drag)];
+        for (name, value) in terms {
+            in_range(name, value, value >= 0.0, "finite and not negative")?;
+        }
+        in_range("elasticity", self.elasticity, (0.0..1.0).contains(&self.elasticity), "at least 0 and below 1")
+    }
+}
+
+/// How to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// h [s], > 0, default 0.01: the step of a fixed-step integrator, the frame of an adaptive one.
+    pub h: f64,
+    /// Default [`Integrator::Rattle`].
+    pub integrator: Integrator,
+    /// Of adaptive integrators: relative error a substep, in (0, 1), default 1e-4.
+    pub tolerance: f64,
+    /// Of every projection: |C| relative to the row's own scale (a rod's length), in [1e-14, 1e-2], default 1e-10.
+    pub constraint_tolerance: f64,
+    /// Of adaptive integrators: substeps in one frame after which they give up, ≥ 1, default 200 000.
+    pub max_substeps: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            h: 0.01,
+            integrator: Integrator::default(),
+            tolerance: 1e-4,
+            constraint_tolerance: 1e-10,
+            max_substeps: 200_000,
+        }
+    }
+}
+
+impl Settings {
+    /// Whether every number is in its range.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        in_range("h", self.h, self.h > 0.0, "finite and positive")?;
+        in_range("tolerance", self.tolerance, self.tolerance > 0.0 && self.tolerance < 1.0, "between 0 and 1")?;
+        let tolerance = self.constraint_tolerance;
+        in_range("constraint_tolerance", tolerance, (1e-14..=1e-2).contains(&tolerance), "from 1e-14 to 1e-2")?;
+        let substeps = self.max_substeps;
+        in_range("max_substeps", substeps as f64, substeps >= 1, "at least 1")
+    }
+}
+
+fn in_range(name: &'static str, value: f64, allowed: bool, range: &'static str) -> Result<(), SettingsError> {
+    if value.is_finite() && allowed { Ok(()) } else { Err(SettingsError::OutOfRange { name, value, range }) }
+}

@@ -1,0 +1,73 @@
+//! State: where everything is, and all that a restart needs to go on with the same bits.
+
+/// q, q̇ and t, the energy account, and what an adaptive integrator carries from frame to frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    pub(crate) t: f64,
+    pub(crate) work: Work,
+    pub(crate) carry: Option<Carry>,
+}
+
+/// Energy that has crossed the borders of the system since t = 0 [J]; positive into it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Of forces without a potential: drag, dampers. Negative where they take energy.
+    pub dissipation: f64,
+    /// Of the constraint force, which does none on legal motion: feedback, diagonal drag, elasticity, projections.
+    pub stabilization: f64,
+    /// Of the hand that moves the mouse spring, and of changes made to the forces while running.
+    pub external: f64,
+}
+
+impl Work {
+    /// All of it [J].
+    pub fn total(&self) -> f64 {
+        self.dissipation + self.stabilization + self.external
+    }
+}
+
+/// What an adaptive integrator carries from one frame to the next.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Carry {
+    /// The last multipliers, the first guess of the next.
+    pub(crate) lambda: Vec<f64>,
+    /// The substep to try next [s].
+    pub(crate) substep: f64,
+}
+
+impl State {
+    pub(crate) fn new(q: Vec<f64>, qd: Vec<f64>) -> Self {
+        State { q, qd, t: 0.0, work: Work::default(), carry: None }
+    }
+
+    /// q [m], d·n numbers, particle after particle.
+    pub fn positions(&self) -> &[f64] {
+        &self.q
+    }
+
+    /// q̇ [m/s], d·n numbers, particle after particle.
+    pub fn velocities(&self) -> &[f64] {
+        &self.qd
+    }
+
+    /// t [s].
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// The energy account.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// The same state at other positions [m] and velocities [m/s]; whatever was carried from earlier steps is dropped.
+    ///
+    /// # Panics
+    /// If the lengths differ from d·n.
+    pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
+        assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
+        State { q: positions, qd: velocities, carry: None, ..self.clone() }
+    }
+}

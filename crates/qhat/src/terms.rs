@@ -1,0 +1,169 @@
+//! Terms: every symbol of one evaluation of the equation, in the order in which they are computed. The glass box.
+
+use crate::constraint::{Constraint, Jacobian};
+use crate::linalg::SymmetricMatrix;
+use crate::multiplier::Equation;
+use crate::point::Motion;
+use crate::report::Warning;
+use crate::settings::Feedback;
+use crate::state::State;
+use crate::system::{System, in_dimension};
+
+/// Every symbol of one evaluation. n particles in d dimensions, N = d·n, m rows, SI units; [`NOTATION`] lists them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terms {
+    /// t \[s\].
+    pub time: f64,
+    /// q, N \[m\].
+    pub positions: Vec<f64>,
+    /// q̇, N \[m/s\].
+    pub velocities: Vec<f64>,
+    /// W, one number a particle, n \[1/kg\].
+    pub inverse_masses: Vec<f64>,
+    /// Q, N \[N\].
+    pub applied_forces: Vec<f64>,
+    /// C, m \[C\].
+    pub residual: Vec<f64>,
+    /// Ċ, m \[C/s\].
+    pub residual_rate: Vec<f64>,
+    /// J, m × N \[C/m\].
+    pub jacobian: Jacobian,
+    /// γ = J̇q̇, m \[C/s²\].
+    pub acceleration_bias: Vec<f64>,
+    /// A = J W Jᵀ, m × m, without ε \[C²/(m² kg)\].
+    pub constraint_matrix: SymmetricMatrix,
+    /// −γ, m \[C/s²\].
+    pub rhs_bias: Vec<f64>,
+    /// −J W Q, m \[C/s²\].
+    pub rhs_forces: Vec<f64>,
+    /// −ks C, m \[C/s²\].
+    pub rhs_stiffness: Vec<f64>,
+    /// −kd Ċ, m \[C/s²\].
+    pub rhs_damping: Vec<f64>,
+    /// b, the sum of the four, m \[C/s²\].
+    pub right_hand_side: Vec<f64>,
+    /// λ, m \[J/C\].
+    pub multipliers: Vec<f64>,
+    /// Q̂ = s Jᵀλ, as applied, N \[N\].
+    pub constraint_forces: Vec<f64>,
+    /// q̈ = W (Q + Q̂), N \[m/s²\].
+    pub accelerations: Vec<f64>,
+    /// Signed tension of every rod, as applied, positive where it pulls its ends together \[N\].
+    pub tension: Vec<f64>,
+    /// Rank of A; `None` where A is singular and too large for the rank to be counted.
+    pub rank: Option<usize>,
+    /// What a user should know of this solve.
+    pub warnings: Vec<Warning>,
+}
+
+/// One row of the notation table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Notation {
+    /// The symbol in derivations.
+    pub symbol: &'static str,
+    /// The letters in equation files.
+    pub letters: &'static str,
+    /// The word in the API: the field of [`Terms`].
+    pub word: &'static str,
+    /// Its shape.
+    pub shape: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The file of the engine that computes it.
+    pub file: &'static str,
+}
+
+const fn row(
+    symbol: &'static str,
+    letters: &'static str,
+    word: &'static str,
+    shape: &'static str,
+    unit: &'static str,
+    file: &'static str,
+) -> Notation {
+    Notation { symbol, letters, word, shape, unit, file }
+}
+
+/// The symbols of [`Terms`], in the order of its fields.
+pub const NOTATION: [Notation; 20] = [
+    row("t", "t", "time", "1", "s", "state.rs"),
+    row("q", "q", "positions", "N", "m", "state.rs"),
+    row("q̇", "qd", "velocities", "N", "m/s", "state.rs"),
+    row("W", "W", "inverse_masses", "n", "1/kg", "system.rs"),
+    row("Q", "Q", "applied_forces", "N", "N", "force/mod.rs"),
+    row("C", "C", "residual", "m", "[C]", "constraint/rows.rs"),
+    row("Ċ", "Cd", "residual_rate", "m", "[C]/s", "constraint/rows.rs"),
+    row("J", "J", "jacobian", "m × N", "[C]/m", "constraint/rows.rs"),
+    row("γ", "gamma", "acceleration_bias", "m", "[C]/s²", "constraint/rows.rs"),
+    row("A", "A", "constraint_matrix", "m × m", "[C]²/(m² kg)", "multiplier/matrix.rs"),
+    row("−γ", "bias", "rhs_bias", "m", "[C]/s²", "multiplier/rhs.rs"),
+    row("−J W Q", "forces", "rhs_forces", "m", "[C]/s²", "multiplier/rhs.rs"),
+    row("−ks C", "stiffness", "rhs_stiffness", "m", "[C]/s²", "multiplier/rhs.rs"),
+    row("−kd Ċ", "damping", "rhs_damping", "m", "[C]/s²", "multiplier/rhs.rs"),
+    row("b", "b", "right_hand_side", "m", "[C]/s²", "multiplier/rhs.rs"),
+    row("λ", "lambda", "multipliers", "m", "J/[C]", "multiplier/factor.rs"),
+    row("Q̂", "Q_hat", "constraint_forces", "N", "N", "multiplier/reaction.rs"),
+    row("q̈", "qdd", "accelerations", "N", "m/s²", "multiplier/reaction.rs"),
+    row("T", "tension", "tension", "rods", "N", "constraint/distance.rs"),
+    row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
+];
+
+/// Evaluates the equation at a state, with the system's own feedback.
+///
+/// ```
+/// use qhat::{Dimension, Gravity, Nail, Particle, System, evaluate};
+/// let mut builder = System::builder(Dimension::Two);
+/// let bob = builder.particle(Particle::at("bob", [0.0, 0.0]).with_mass(3.0));
+/// builder.constraint("nail", Nail::new(bob, [0.0; 3])).force(Gravity { acceleration: [0.0, -10.0, 0.0] });
+/// let (system, state) = builder.build()?;
+/// assert_eq!(evaluate(&system, &state).multipliers, [0.0, 30.0]); // the nail carries m g
+/// # Ok::<(), qhat::BuildError>(())
+/// ```
+pub fn evaluate(system: &System, state: &State) -> Terms {
+    evaluate_with(system, state, &system.feedback)
+}
+
+/// The same with another feedback: integrators that project see the bare equation.
+pub(crate) fn evaluate_with(system: &System, state: &State, feedback: &Feedback) -> Terms {
+    let mut equation = Equation::new(system);
+    let tension = in_dimension!(system.dimension, D => {
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        equation.solve(system, motion, feedback);
+        let s = 1.0 - feedback.elasticity;
+        tension(system, motion, &equation.lambda, s)
+    });
+    let rank = equation.solver.rank(&system.matrix.pattern);
+    let warnings = equation.warnings(system);
+    Terms {
+        time: state.t,
+        positions: state.q.clone(),
+        velocities: state.qd.clone(),
+        inverse_masses: system.inverse_mass.clone(),
+        applied_forces: equation.Q,
+        residual: equation.rows.C,
+        residual_rate: equation.rows.Cd,
+        jacobian: equation.rows.J,
+        acceleration_bias: equation.rows.gamma,
+        constraint_matrix: SymmetricMatrix { pattern: system.matrix.pattern.clone(), values: equation.A },
+        rhs_bias: equation.b.bias,
+        rhs_forces: equation.b.forces,
+        rhs_stiffness: equation.b.stiffness,
+        rhs_damping: equation.b.damping,
+        right_hand_side: equation.b.sum,
+        multipliers: equation.lambda,
+        constraint_forces: equation.Q_hat,
+        accelerations: equation.qdd,
+        tension,
+        rank,
+        warnings,
+    }
+}
+
+/// Signed tension of every rod [N] for given multipliers, as applied (s λ).
+fn tension<const D: usize>(system: &System, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> Vec<f64> {
+    let rods = system.constraints.iter().filter_map(|named| match &named.constraint {
+        Constraint::Distance(rod) => Some((rod, lambda[named.first_row])),
+        Constraint::Nail(_) => None,
+    });
+    rods.map(|(rod, multiplier)| rod.tension(motion, s * multiplier)).collect()
+}
