@@ -1,7 +1,9 @@
 //! Energy, residuals and drift of a motion.
 //!
-//!     T = ½ Σ m_i v_i·v_i over the particles that can move,   V = Σ of the forces' potentials     [J]
-//!     missing = T + V − (T + V at t = 0) − work of everything that crossed the border
+//! ```text
+//! T = ½ Σ m_i v_i·v_i over the particles that can move,   V = Σ of the forces' potentials     [J]
+//! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
+//! ```
 
 use crate::constraint::{Constraint, Rows};
 use crate::force::Acts;

@@ -1,22 +1,28 @@
 //! Distance: two particles a and b stay r apart. A rod.
 //!
-//!     d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
+//! ```text
+//! d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
+//! ```
 //!
 //! length form (default), [C] = m, λ in N, tension = −λ:
 //!
-//!     C  = |d| − r
-//!     Ċ  = n·u
-//!     J  = nᵀ on a, −nᵀ on b
-//!     γ  = (u·u − (n·u)²)/|d|        since C̈ = n·u̇ + ṅ·u and ṅ = (u − n (n·u))/|d|
-//!     |∂²C/∂x²| = |I − nnᵀ|/|d| = 1/|d|
+//! ```text
+//! C  = |d| − r
+//! Ċ  = n·u
+//! J  = nᵀ on a, −nᵀ on b
+//! γ  = (u·u − (n·u)²)/|d|        since C̈ = n·u̇ + ṅ·u and ṅ = (u − n (n·u))/|d|
+//! |∂²C/∂x²| = |I − nnᵀ|/|d| = 1/|d|
+//! ```
 //!
 //! squared form (the source's, with the −r² it forgot), [C] = m², λ in N/m, tension = −2|d|λ:
 //!
-//!     C  = d·d − r²
-//!     Ċ  = 2 d·u
-//!     J  = 2dᵀ on a, −2dᵀ on b
-//!     γ  = 2 u·u
-//!     |∂²C/∂x²| = 2
+//! ```text
+//! C  = d·d − r²
+//! Ċ  = 2 d·u
+//! J  = 2dᵀ on a, −2dᵀ on b
+//! γ  = 2 u·u
+//! |∂²C/∂x²| = 2
+//! ```
 //!
 //! Fails at |d| = 0: the length form has no direction there and takes the first axis with γ = 0 (any unit vector is
 //! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
@@ -29,10 +35,10 @@ use crate::system::ParticleId;
 /// Which function of the distance is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DistanceForm {
-    /// C = |d| − r \[m\].
+    /// C = |d| − r [m].
     #[default]
     Length,
-    /// C = d·d − r² \[m²\], the source's.
+    /// C = d·d − r² [m²], the source's.
     Squared,
 }
 

@@ -2,11 +2,15 @@
 //!
 //! vector form (default), d rows, [C] = m, λ in N is the nail's force on the particle:
 //!
-//!     C = x − p,   Ċ = v,   J = I,   γ = 0
+//! ```text
+//! C = x − p,   Ċ = v,   J = I,   γ = 0
+//! ```
 //!
 //! scalar form (the source's), one row, [C] = m², λ in N/m:
 //!
-//!     C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   |∂²C/∂x²| = 2
+//! ```text
+//! C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   |∂²C/∂x²| = 2
+//! ```
 //!
 //! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
 //! That is why the source needed its diagonal drag.
@@ -18,10 +22,10 @@ use crate::system::ParticleId;
 /// Which function of x − p is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NailForm {
-    /// C = x − p \[m\], d rows.
+    /// C = x − p [m], d rows.
     #[default]
     Vector,
-    /// C = |x − p|² \[m²\], one row, the source's.
+    /// C = |x − p|² [m²], one row, the source's.
     Scalar,
 }
 

@@ -1,7 +1,9 @@
 //! Viscous drag, the source's "damping": it slows every particle.
 //!
-//!     F_i = −kd v_i                  [N], kd in N·s/m
-//!     power = −kd Σ v_i · v_i        [W]
+//! ```text
+//! F_i = −kd v_i                  [N], kd in N·s/m
+//! power = −kd Σ v_i · v_i        [W]
+//! ```
 
 use super::{Acts, not_negative};
 use crate::point::{Motion, add, dot, scaled};

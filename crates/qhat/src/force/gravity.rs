@@ -1,7 +1,9 @@
 //! Uniform gravity.
 //!
-//!     F_i = m_i g                    [N]
-//!     V   = −Σ m_i g · x_i           [J]
+//! ```text
+//! F_i = m_i g                    [N]
+//! V   = −Σ m_i g · x_i           [J]
+//! ```
 
 use super::{Acts, finite};
 use crate::point::{Motion, add, dot, first, scaled};

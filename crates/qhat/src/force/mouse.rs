@@ -1,8 +1,10 @@
 //! Mouse spring: a damped spring of no length between a particle and the point p that a hand moves.
 //!
-//!     F = −ks (x − p) − kd v         [N]
-//!     V = ½ ks |x − p|²              [J]
-//!     power of the damper = −kd v·v  [W]
+//! ```text
+//! F = −ks (x − p) − kd v         [N]
+//! V = ½ ks |x − p|²              [J]
+//! power of the damper = −kd v·v  [W]
+//! ```
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 

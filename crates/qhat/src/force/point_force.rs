@@ -1,7 +1,9 @@
 //! Constant force on one particle.
 //!
-//!     F = f                          [N]
-//!     V = −f · x                     [J]
+//! ```text
+//! F = f                          [N]
+//! V = −f · x                     [J]
+//! ```
 
 use super::{Acts, finite};
 use crate::point::{Motion, add, dot, first};

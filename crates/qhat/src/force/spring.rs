@@ -1,9 +1,11 @@
 //! Damped Hookean spring (the source's external force, its damping sign corrected; method notes, slips).
 //!
-//!     L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
-//!     F_a = −[ks (|L| − r) + kd L̇·n] n,   F_b = −F_a           [N]
-//!     V   = ½ ks (|L| − r)²                                     [J]
-//!     power of the damper = −kd (L̇·n)²                          [W]
+//! ```text
+//! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
+//! F_a = −[ks (|L| − r) + kd L̇·n] n,   F_b = −F_a           [N]
+//! V   = ½ ks (|L| − r)²                                     [J]
+//! power of the damper = −kd (L̇·n)²                          [W]
+//! ```
 //!
 //! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.

@@ -1,6 +1,8 @@
 //! Explicit Euler, the source's own: order 1, not symmetric.
 //!
-//!     q' = q + h q̇,   q̇' = q̇ + h q̈(q, q̇, t)
+//! ```text
+//! q' = q + h q̇,   q̇' = q̇ + h q̈(q, q̇, t)
+//! ```
 //!
 //! Unstable for any undamped oscillation, however small h: energy grows, rods drift. Kept because it shows why the source
 //! needed feedback, diagonal drag and elasticity.

@@ -1,7 +1,9 @@
 //! Projection onto C(q) = 0 and Ċ = 0, in the mass metric.
 //!
-//!     q ← q − W Jᵀ A⁻¹ C,  repeated until every |C| is within tolerance
-//!     q̇ ← q̇ − W Jᵀ A⁻¹ (J q̇)
+//! ```text
+//! q ← q − W Jᵀ A⁻¹ C,  repeated until every |C| is within tolerance
+//! q̇ ← q̇ − W Jᵀ A⁻¹ (J q̇)
+//! ```
 //!
 //! Newton's method with the step halved while it does not bring the constraints nearer. Fails where no q satisfies them, or
 //! where the start is too far away.

@@ -1,9 +1,11 @@
 //! RATTLE with substeps of its own choosing: order 2, symmetric, symplectic at a constant substep.
 //!
-//!     q̇½ = q̇ + ½h W Q(q, q̇)
-//!     q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q') = 0
-//!     q̇* = q̇½ + W J(q)ᵀ μ/h
-//!     q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' = 0
+//! ```text
+//! q̇½ = q̇ + ½h W Q(q, q̇)
+//! q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q') = 0
+//! q̇* = q̇½ + W J(q)ᵀ μ/h
+//! q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' = 0
+//! ```
 //!
 //! μ = ½h² λ(t + h/3) and ν = ½h λ(t + 2h/3) to second order. Both are solved with A = J W Jᵀ: μ by Newton's method with A(q)
 //! kept over the iterations, ν in one solve with A(q'), whose factor then serves the next substep. One factorization a

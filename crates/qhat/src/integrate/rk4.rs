@@ -1,6 +1,8 @@
 //! The classical Runge–Kutta method: order 4, not symmetric.
 //!
-//!     k_i = q̈(q + c_i h q̇_{i−1}, q̇ + c_i h k_{i−1}),   c = 0, ½, ½, 1,   weights 1/6, 1/3, 1/3, 1/6
+//! ```text
+//! k_i = q̈(q + c_i h q̇_{i−1}, q̇ + c_i h k_{i−1}),   c = 0, ½, ½, 1,   weights 1/6, 1/3, 1/3, 1/6
+//! ```
 //!
 //! Stable while h ω < 2.83. λ is exact at every stage, so C drifts only by the method's own error.
 //! Source: Kutta (1901).

@@ -1,6 +1,8 @@
 //! Semi-implicit Euler: order 1, not symmetric.
 //!
-//!     q̇' = q̇ + h q̈(q, q̇, t),   q' = q + h q̇'
+//! ```text
+//! q̇' = q̇ + h q̈(q, q̇, t),   q' = q + h q̇'
+//! ```
 //!
 //! Symplectic for forces that depend on q alone: energy oscillates instead of growing while h ω < 2. Off the constraints it
 //! drifts to first order, so it needs feedback: stable for kd h < 2 and ks h² + 2 kd h < 4.

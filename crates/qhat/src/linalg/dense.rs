@@ -1,7 +1,9 @@
 //! Dense LDLᵀ without pivoting, for small positive definite matrices.
 //!
-//!     A = L D Lᵀ,  L unit lower triangular, D diagonal:
-//!     D_j  = A_jj − Σ_{k<j} L_jk² D_k,   L_ij = (A_ij − Σ_{k<j} L_ik L_jk D_k)/D_j
+//! ```text
+//! A = L D Lᵀ,  L unit lower triangular, D diagonal:
+//! D_j  = A_jj − Σ_{k<j} L_jk² D_k,   L_ij = (A_ij − Σ_{k<j} L_ik L_jk D_k)/D_j
+//! ```
 
 use super::Pattern;
 

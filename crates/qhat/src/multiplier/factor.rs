@@ -4,9 +4,11 @@
 //! and very different masses are judged alike. A plain LDLᵀ of M is tried; where a pivot comes out tiny, or the solution
 //! does not satisfy the equation, M is singular to working precision (redundant rows) and G = (M + δ I)⁻¹ takes over:
 //!
-//!     null(y) = lim Pᵏ y,  P = δ G       P keeps the null space of M and shrinks its range by δ/(σ + δ)
-//!     x ← x + G (b − null(b) − M x)      refinement, from 0: stays in the range of M, so it goes to the least norm x
-//!     x ← x − null(x)                    removes the roundoff that G has amplified by 1/δ in the null space
+//! ```text
+//! null(y) = lim Pᵏ y,  P = δ G       P keeps the null space of M and shrinks its range by δ/(σ + δ)
+//! x ← x + G (b − null(b) − M x)      refinement, from 0: stays in the range of M, so it goes to the least norm x
+//! x ← x − null(x)                    removes the roundoff that G has amplified by 1/δ in the null space
+//! ```
 //!
 //! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
 //! how far the rows contradict each other.

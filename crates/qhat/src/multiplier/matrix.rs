@@ -1,6 +1,8 @@
 //! The constraint matrix.
 //!
-//!     A = J W Jᵀ,   A_ij = Σ_p w_p J_ip · J_jp        m × m, symmetric, positive semidefinite
+//! ```text
+//! A = J W Jᵀ,   A_ij = Σ_p w_p J_ip · J_jp        m × m, symmetric, positive semidefinite
+//! ```
 //!
 //! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which pairs of
 //! blocks meet in which entry is found once, when the System is built.

@@ -1,6 +1,8 @@
 //! The equation: from a motion to λ, Q̂ and q̈.
 //!
-//!     (J W Jᵀ + ε I) λ = −γ − J W Q − ks C − kd Ċ,   Q̂ = s Jᵀ λ,   q̈ = W (Q + Q̂)
+//! ```text
+//! (J W Jᵀ + ε I) λ = −γ − J W Q − ks C − kd Ċ,   Q̂ = s Jᵀ λ,   q̈ = W (Q + Q̂)
+//! ```
 
 mod factor;
 mod matrix;

@@ -1,7 +1,9 @@
 //! The constraint force and the motion it leads to.
 //!
-//!     Q̂ = s Jᵀ λ,   s = 1 − elasticity         [N], d·n numbers
-//!     q̈ = W (Q + Q̂)                            [m/s²]
+//! ```text
+//! Q̂ = s Jᵀ λ,   s = 1 − elasticity         [N], d·n numbers
+//! q̈ = W (Q + Q̂)                            [m/s²]
+//! ```
 
 use crate::constraint::Jacobian;
 

@@ -1,6 +1,8 @@
 //! The right side, in its four terms (m numbers each, [C]/s²).
 //!
-//!     b = −γ − J W Q − ks C − kd Ċ
+//! ```text
+//! b = −γ − J W Q − ks C − kd Ċ
+//! ```
 
 use crate::constraint::Rows;
 use crate::settings::Feedback;
