@@ -10,7 +10,7 @@ use crate::report::{Projection, StepReport};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
 use crate::system::{ParticleId, System, in_dimension};
-use crate::terms::{Terms, evaluate_with};
+use crate::terms::Terms;
 
 /// The share of the energy scale below which a kinetic energy does not count as motion: energy errors are relative to the
 /// largest kinetic energy, and for a structure at rest that must not be roundoff.
@@ -24,7 +24,6 @@ pub struct Simulation {
     settings: Settings,
     workspace: Workspace,
     start: State,
-    start_forces: Vec<Force>,
     projection: Projection,
     /// T + V less what came in, at the start [J].
     balance: f64,
@@ -44,11 +43,10 @@ impl Simulation {
         let mut simulation = Simulation {
             workspace: Workspace::new(&system),
             start: state.clone(),
-            start_forces: system.forces.clone(),
-            energy_floor: ENERGY_FLOOR * measure::energy_scale(&system, &state),
             projection: Projection::default(),
             balance: 0.0,
             largest_kinetic: 0.0,
+            energy_floor: 0.0,
             energy_error_max: 0.0,
             system,
             state,
@@ -63,6 +61,7 @@ impl Simulation {
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
+        self.energy_floor = ENERGY_FLOOR * measure::energy_scale(&self.system, &self.state);
         let energy = self.energy();
         self.balance = energy.balance();
         self.largest_kinetic = energy.kinetic;
@@ -103,13 +102,13 @@ impl Simulation {
         self.energy_error_max = self.energy_error_max.max(self.energy_error().abs());
     }
 
-    /// Back to the start: state and forces; settings stay.
+    /// Back to where it started, with nothing held; settings, forces and forms stay as they are now.
     ///
     /// # Errors
     /// As [`Simulation::new`], if the settings changed to ones under which the start cannot be made consistent.
     pub fn reset(&mut self) -> Result<(), StepError> {
+        self.release();
         self.state = self.start.clone();
-        self.system.forces = self.start_forces.clone();
         self.begin()
     }
 
@@ -134,13 +133,15 @@ impl Simulation {
     }
 
     /// Every symbol of the equation at the present state, with the feedback that the integrator uses.
-    pub fn terms(&self) -> Terms {
-        evaluate_with(&self.system, &self.state, &self.feedback_in_use())
+    pub fn terms(&mut self) -> Terms {
+        let feedback = self.feedback_in_use();
+        self.workspace.terms(&self.system, &self.state, &feedback)
     }
 
     /// Signed tension of every rod at the present state, as applied [N].
-    pub fn tension(&self) -> Vec<f64> {
-        self.terms().tension
+    pub fn tension(&mut self) -> Vec<f64> {
+        let feedback = self.feedback_in_use();
+        self.workspace.tension(&self.system, &self.state, &feedback)
     }
 
     /// The energy account at the present state.

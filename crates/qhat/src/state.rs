@@ -35,6 +35,8 @@ pub(crate) struct Carry {
     pub(crate) lambda: Vec<f64>,
     /// The substep to try next [s].
     pub(crate) substep: f64,
+    /// Whether A was found singular at this state.
+    pub(crate) deficient: bool,
 }
 
 impl State {

@@ -1,6 +1,7 @@
 //! Terms: every symbol of one evaluation of the equation, in the order in which they are computed. The glass box.
 
 use crate::constraint::{Constraint, Jacobian};
+use crate::integrate::Workspace;
 use crate::linalg::SymmetricMatrix;
 use crate::multiplier::Equation;
 use crate::point::Motion;
@@ -121,18 +122,28 @@ pub const NOTATION: [Notation; 20] = [
 /// # Ok::<(), qhat::BuildError>(())
 /// ```
 pub fn evaluate(system: &System, state: &State) -> Terms {
-    evaluate_with(system, state, &system.feedback)
+    Workspace::new(system).terms(system, state, &system.feedback)
 }
 
-/// The same with another feedback: integrators that project see the bare equation.
-pub(crate) fn evaluate_with(system: &System, state: &State, feedback: &Feedback) -> Terms {
-    let mut equation = Equation::new(system);
-    let tension = in_dimension!(system.dimension, D => {
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        equation.solve(system, motion, feedback);
-        let s = 1.0 - feedback.elasticity;
-        tension(system, motion, &equation.lambda, s)
-    });
+impl Workspace {
+    /// Every symbol at a state. Integrators that project see the bare equation: their feedback is none.
+    pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
+        let tension = self.tension(system, state, feedback);
+        let equation = self.equation().clone();
+        collect(system, state, equation, tension)
+    }
+
+    /// Signed tension of every rod [N], as applied.
+    pub(crate) fn tension(&mut self, system: &System, state: &State, feedback: &Feedback) -> Vec<f64> {
+        in_dimension!(system.dimension, D => {
+            let equation = self.solve::<D>(system, state, feedback);
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+            tension(system, motion, &equation.lambda, 1.0 - feedback.elasticity)
+        })
+    }
+}
+
+fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
     let rank = equation.solver.rank(&system.matrix.pattern);
     let warnings = equation.warnings(system);
     Terms {

@@ -14,9 +14,8 @@ use crate::state::State;
 use crate::system::System;
 
 pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, workspace: &mut Workspace) -> StepWork {
+    workspace.solve::<D>(system, state, &system.feedback);
     let Workspace { equation, q, qd, .. } = workspace;
-    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-    equation.solve(system, motion, &system.feedback);
     for k in 0..q.len() {
         q[k] = state.q[k] + h * state.qd[k];
         qd[k] = state.qd[k] + h * equation.qdd[k];

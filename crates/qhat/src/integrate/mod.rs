@@ -14,7 +14,7 @@ use crate::measure::{self, Drift};
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::{Projection, StepReport};
-use crate::settings::{Integrator, Settings};
+use crate::settings::{Feedback, Integrator, Settings};
 use crate::state::State;
 use crate::system::{System, in_dimension};
 
@@ -46,6 +46,24 @@ impl Workspace {
             rk4: rk4::Stages::new(coordinates),
             rattle: rattle::Scratch::new(system),
         }
+    }
+}
+
+impl Workspace {
+    pub(crate) fn equation(&self) -> &Equation {
+        &self.equation
+    }
+
+    /// Solves the equation at a state; a factor of A that is there already is kept.
+    pub(crate) fn solve<const D: usize>(&mut self, system: &System, state: &State, feedback: &Feedback) -> &Equation {
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let is_factored = feedback.diagonal_drag == 0.0 && self.factored_at == state.q;
+        self.equation.solve(system, motion, feedback, is_factored);
+        self.factored_at.clear();
+        if feedback.diagonal_drag == 0.0 {
+            self.factored_at.extend_from_slice(&state.q);
+        }
+        &self.equation
     }
 }
 
@@ -111,10 +129,10 @@ fn fixed<const D: usize>(
     workspace: &mut Workspace,
     method: FixedStep,
 ) -> Result<StepReport, StepError> {
-    workspace.factored_at.clear();
     let factorizations = workspace.equation.solver.factorizations;
     let work = method(system, state, h, workspace);
     let warnings = workspace.equation.warnings(system);
+    workspace.factored_at.clear();
     let drift = examine::<D>(system, state.t, workspace)?;
     std::mem::swap(&mut state.q, &mut workspace.q);
     std::mem::swap(&mut state.qd, &mut workspace.qd);

@@ -20,6 +20,7 @@ use super::{Workspace, check_finite};
 use crate::constraint::Jacobian;
 use crate::error::StepError;
 use crate::measure;
+use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::StepReport;
 use crate::settings::{Feedback, Settings};
@@ -88,7 +89,8 @@ pub(super) fn frame<const D: usize>(
 ) -> Result<StepReport, StepError> {
     let mut report = StepReport { smallest_substep: frame, ..StepReport::default() };
     let factorizations = workspace.equation.solver.factorizations;
-    let Carry { mut lambda, substep: mut proposed } = begin::<D>(system, state, frame, workspace);
+    let Carry { mut lambda, substep: mut proposed, .. } = begin::<D>(system, state, frame, workspace);
+    workspace.factored_at.clear();
     let start = state.t;
     let mut done = 0.0;
     while done < frame {
@@ -106,11 +108,7 @@ pub(super) fn frame<const D: usize>(
                 state.carry = None;
                 return Err(failure(system, state, workspace));
             }
-            // Rows, forces and perhaps the factor have moved on to the tried state.
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-            workspace.equation.apply_forces(system, motion);
-            workspace.equation.constrain(system, motion);
-            workspace.equation.factor::<D>(system, 0.0);
+            return_to::<D>(system, state, &mut workspace.equation);
             continue;
         };
         check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
@@ -137,7 +135,8 @@ pub(super) fn frame<const D: usize>(
     for warning in workspace.equation.warnings(system) {
         report.warn(warning);
     }
-    state.carry = Some(Carry { lambda, substep: proposed });
+    let deficient = workspace.equation.solver.deficient;
+    state.carry = Some(Carry { lambda, substep: proposed, deficient });
     workspace.factored_at.clone_from(&state.q);
     report.factorizations = workspace.equation.solver.factorizations - factorizations;
     report.energy = measure::energy(system, state);
@@ -147,23 +146,36 @@ pub(super) fn frame<const D: usize>(
 /// What the last frame carried over, or for a first frame λ from the equation itself. Leaves rows, forces and the factor
 /// of A at the state; a factor that is there already is kept.
 fn begin<const D: usize>(system: &System, state: &mut State, frame: f64, workspace: &mut Workspace) -> Carry {
-    let Workspace { equation, factored_at, .. } = workspace;
-    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-    let is_factored = std::mem::take(factored_at) == state.q;
     match state.carry.take() {
         Some(carry) => {
-            equation.apply_forces(system, motion);
-            equation.constrain(system, motion);
-            if !is_factored {
-                equation.factor::<D>(system, 0.0);
+            let is_factored = workspace.factored_at == state.q;
+            let equation = &mut workspace.equation;
+            // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
+            if is_factored && equation.solver.deficient == carry.deficient {
+                let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+                equation.apply_forces(system, motion);
+                equation.constrain(system, motion);
+            } else {
+                return_to::<D>(system, state, equation);
+                if carry.deficient {
+                    equation.solver.regularize(&system.matrix.pattern);
+                }
             }
             carry
         }
         None => {
-            equation.solve(system, motion, &Feedback::NONE);
-            Carry { lambda: equation.lambda.clone(), substep: frame }
+            let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
+            Carry { lambda: equation.lambda.clone(), substep: frame, deficient: equation.solver.deficient }
         }
     }
+}
+
+/// Rows, forces and the factor of A at the state, wherever they are now.
+fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
+    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+    equation.apply_forces(system, motion);
+    equation.constrain(system, motion);
+    equation.factor::<D>(system, 0.0);
 }
 
 /// The whole of what remains, half of it, or h: so that no sliver is left for the end.

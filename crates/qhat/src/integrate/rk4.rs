@@ -43,7 +43,7 @@ pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, works
             stage.qd[k] = state.qd[k] + c * h * stage.slope[k];
         }
         let motion = Motion::<D> { q: &stage.q, qd: &stage.qd };
-        equation.solve(system, motion, &system.feedback);
+        equation.solve(system, motion, &system.feedback, false);
         stage.slope.copy_from_slice(&equation.qdd);
         for k in 0..q.len() {
             q[k] += weight * h * stage.qd[k];

@@ -9,14 +9,12 @@
 
 use super::euler::work_of_kick;
 use super::{StepWork, Workspace};
-use crate::point::Motion;
 use crate::state::State;
 use crate::system::System;
 
 pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, workspace: &mut Workspace) -> StepWork {
+    workspace.solve::<D>(system, state, &system.feedback);
     let Workspace { equation, q, qd, .. } = workspace;
-    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-    equation.solve(system, motion, &system.feedback);
     for k in 0..q.len() {
         qd[k] = state.qd[k] + h * equation.qdd[k];
         q[k] = state.q[k] + h * qd[k];

@@ -96,7 +96,11 @@ impl MultiplierSolver {
         }
     }
 
-    fn regularize(&mut self, pattern: &Pattern) {
+    /// Goes over to G, unless it is in use.
+    pub(crate) fn regularize(&mut self, pattern: &Pattern) {
+        if self.deficient {
+            return;
+        }
         self.deficient = true;
         self.factorizations += 1;
         self.factor.factor(pattern, &self.scaled, REGULARIZATION);

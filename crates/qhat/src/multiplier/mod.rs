@@ -49,12 +49,21 @@ impl Equation {
         }
     }
 
-    /// Solves the equation at one motion: everything from Q to q̈.
-    pub(crate) fn solve<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>, feedback: &Feedback) {
+    /// Solves the equation at one motion: everything from Q to q̈. Where the factor of A + ε I at this q is at hand already,
+    /// it is not made again.
+    pub(crate) fn solve<const D: usize>(
+        &mut self,
+        system: &System,
+        motion: Motion<'_, D>,
+        feedback: &Feedback,
+        is_factored: bool,
+    ) {
         self.apply_forces(system, motion);
         self.constrain(system, motion);
         self.b.assemble::<D>(&self.rows, &self.WQ, feedback);
-        self.factor::<D>(system, feedback.diagonal_drag);
+        if !is_factored {
+            self.factor::<D>(system, feedback.diagonal_drag);
+        }
         self.solver.solve(&system.matrix.pattern, &self.b.sum, &mut self.lambda);
         let s = 1.0 - feedback.elasticity;
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
