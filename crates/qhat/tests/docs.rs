@@ -1,0 +1,101 @@
+//! The documents say what the code does: the notation table, the paths they name, the links they make.
+
+use qhat::NOTATION;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Every document of the project, by its path from the root.
+fn documents() -> Vec<String> {
+    let mut found: Vec<String> =
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(String::from).into();
+    for folder in ["docs", "docs/method"] {
+        for entry in fs::read_dir(root().join(folder)).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            if name.ends_with(".md") {
+                found.push(format!("{folder}/{name}"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn notation_table_is_the_one_in_the_code() {
+    let table = read("docs/notation.md");
+    let rows: Vec<&str> = table.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    let expected: Vec<String> = NOTATION
+        .iter()
+        .map(|n| {
+            let (symbol, letters, word, shape, unit, file) = (n.symbol, n.letters, n.word, n.shape, n.unit, n.file);
+            format!("| {symbol} | `{letters}` | `{word}` | {shape} | {unit} | `crates/qhat/src/{file}` |")
+        })
+        .collect();
+    assert_eq!(rows, expected);
+}
+
+#[test]
+fn terms_has_the_fields_of_the_notation_table_in_its_order() {
+    let source = read("crates/qhat/src/terms.rs");
+    let body = source.split("pub struct Terms {").nth(1).unwrap().split("\n}").next().unwrap();
+    let fields: Vec<&str> =
+        body.lines().filter_map(|line| line.trim().strip_prefix("pub ")?.split(':').next()).collect();
+    let mut words: Vec<&str> = NOTATION.iter().map(|n| n.word).collect();
+    words.push("warnings"); // words for a person, not a symbol
+    assert_eq!(fields, words);
+}
+
+#[test]
+fn letters_of_the_notation_table_stand_in_their_files() {
+    for n in NOTATION {
+        let source = read(&format!("crates/qhat/src/{}", n.file));
+        let letters: Vec<&str> = source.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        assert!(letters.contains(&n.letters), "`{}` is not in {}", n.letters, n.file);
+    }
+}
+
+#[test]
+fn every_path_named_in_a_document_exists() {
+    // Built or made on demand, so not in a fresh clone.
+    let made = ["target/", "playground/dist", "playground/node_modules", "crates/qhat/src/constraint/NAME.rs"];
+    let made_by_recipe = |path: &str| path.contains("NAME") || made.iter().any(|start| path.starts_with(start));
+    let mut named = 0;
+    for document in documents() {
+        for path in read(&document).split('`').skip(1).step_by(2) {
+            let is_path = path.contains('/')
+                && path.chars().all(|c| c.is_ascii_alphanumeric() || "._-/".contains(c))
+                && ["crates/", "docs/", "scenes/", "playground/", "scripts/", "target/", ".ci/"]
+                    .iter()
+                    .any(|start| path.starts_with(start));
+            if is_path && !made_by_recipe(path) {
+                named += 1;
+                assert!(root().join(path).exists(), "{document} names `{path}`, which does not exist");
+            }
+        }
+    }
+    assert!(named > 30, "the search for paths found only {named}");
+}
+
+#[test]
+fn every_link_in_a_document_leads_somewhere() {
+    let mut links = 0;
+    for document in documents() {
+        let folder = root().join(&document).parent().unwrap().to_path_buf();
+        for target in read(&document).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if target.starts_with('#') || target.contains(':') {
+                continue;
+            }
+            links += 1;
+            let path = target.split('#').next().unwrap();
+            assert!(folder.join(path).exists(), "{document} links to {target}, which does not exist");
+        }
+    }
+    assert!(links > 5, "the search for links found only {links}");
+}
