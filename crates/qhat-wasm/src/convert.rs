@@ -1,0 +1,187 @@
+//! The engine's records as JavaScript records, field by field, and the page's controls as calls of the engine.
+
+use crate::record::{Record, error, list, number, numbers, point, strings, text};
+use crate::{Controls, Projection, StepReport, Structure, Terms};
+use js_sys::Float64Array;
+use qhat::{
+    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System,
+};
+use wasm_bindgen::JsValue;
+
+/// J and A cross only where a person could read them: cells of the larger one, m × N.
+const LARGEST_GRID: usize = 4096;
+
+pub(crate) fn structure(system: &System, name: &str, description: &str) -> Structure {
+    let rods = system.rods().map(|rod| {
+        Record::new()
+            .with("name", rod.name)
+            .with("a", rod.a.0 as u32)
+            .with("b", rod.b.0 as u32)
+            .with("length", rod.length)
+            .with("row", rod.row as u32)
+    });
+    let nails = system.constraints().iter().filter_map(|named| match &named.constraint {
+        Constraint::Nail(nail) => Some(
+            Record::new()
+                .with("name", named.name.as_str())
+                .with("particle", nail.particle.0 as u32)
+                .with("at", list(nail.at)),
+        ),
+        _ => None,
+    });
+    let springs = system.forces().iter().filter_map(|force| match force {
+        Force::Spring(spring) => {
+            Some(Record::new().with("a", spring.a.0 as u32).with("b", spring.b.0 as u32).with("rest", spring.rest))
+        }
+        _ => None,
+    });
+    Record::new()
+        .with("name", name)
+        .with("description", description)
+        .with("dimension", system.dimension() as u32)
+        .with("particle_names", strings(system.particle_names()))
+        .with("row_names", strings(system.row_names()))
+        .with("masses", numbers(system.masses()))
+        .with("fixed", list((0..system.particle_count()).map(|i| system.is_fixed(ParticleId(i)))))
+        .with("rods", list(rods))
+        .with("nails", list(nails))
+        .with("springs", list(springs))
+        .finish()
+}
+
+pub(crate) fn energy(energy: &qhat::Energy) -> Record {
+    Record::new()
+        .with("kinetic", energy.kinetic)
+        .with("potential", energy.potential)
+        .with("total", energy.total())
+        .with("balance", energy.balance())
+}
+
+pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
+    Record::new()
+        .with("substeps", report.substeps as f64)
+        .with("rejected", report.rejected as f64)
+        .with("factorizations", report.factorizations as f64)
+        .with("iterations", report.iterations as f64)
+        .with("smallest_substep", report.smallest_substep)
+        .with("max_residual", report.max_residual)
+        .with("max_residual_rate", report.max_residual_rate)
+        .with("max_relative_length_error", report.max_relative_length_error)
+        .with("energy", energy(&report.energy))
+        .with("warnings", strings(&report.warnings))
+        .finish()
+}
+
+pub(crate) fn projection(projection: &qhat::Projection) -> Projection {
+    Record::new()
+        .with("moved", projection.moved)
+        .with("velocity_changed", projection.velocity_changed)
+        .with("residual_before", projection.residual_before)
+        .with("iterations", projection.iterations as f64)
+        .finish()
+}
+
+pub(crate) fn terms(terms: &qhat::Terms) -> Terms {
+    let grid = terms.positions.len().max(terms.residual.len()) * terms.residual.len();
+    let dense = |matrix: &dyn Fn() -> Vec<f64>| -> JsValue {
+        if grid <= LARGEST_GRID { numbers(&matrix()).into() } else { JsValue::NULL }
+    };
+    let rank = terms.rank.map_or(JsValue::NULL, |rank| JsValue::from(rank as f64));
+    let vector = |values: &Vec<f64>| -> Float64Array { numbers(values) };
+    Record::new()
+        .with("time", terms.time)
+        .with("positions", vector(&terms.positions))
+        .with("velocities", vector(&terms.velocities))
+        .with("inverse_masses", vector(&terms.inverse_masses))
+        .with("applied_forces", vector(&terms.applied_forces))
+        .with("residual", vector(&terms.residual))
+        .with("residual_rate", vector(&terms.residual_rate))
+        .with("jacobian", dense(&|| terms.jacobian.to_dense()))
+        .with("acceleration_bias", vector(&terms.acceleration_bias))
+        .with("constraint_matrix", dense(&|| terms.constraint_matrix.to_dense()))
+        .with("rhs_bias", vector(&terms.rhs_bias))
+        .with("rhs_forces", vector(&terms.rhs_forces))
+        .with("rhs_stiffness", vector(&terms.rhs_stiffness))
+        .with("rhs_damping", vector(&terms.rhs_damping))
+        .with("right_hand_side", vector(&terms.right_hand_side))
+        .with("multipliers", vector(&terms.multipliers))
+        .with("constraint_forces", vector(&terms.constraint_forces))
+        .with("accelerations", vector(&terms.accelerations))
+        .with("tension", vector(&terms.tension))
+        .with("rank", rank)
+        .with("warnings", strings(&terms.warnings))
+        .finish()
+}
+
+pub(crate) fn controls(simulation: &Simulation) -> Controls {
+    let feedback = simulation.system().feedback();
+    Record::new()
+        .with("h", simulation.settings().h)
+        .with("integrator", simulation.settings().integrator.name())
+        .with("formulation", formulation(simulation.system()))
+        .with("ks", feedback.ks)
+        .with("kd", feedback.kd)
+        .with("diagonal_drag", feedback.diagonal_drag)
+        .with("elasticity", feedback.elasticity)
+        .with("gravity", list(simulation.gravity()))
+        .with("drag", simulation.drag())
+        .finish()
+}
+
+/// Sets only what differs: a projection or a new factorization that nobody asked for would change the motion.
+pub(crate) fn set_controls(simulation: &mut Simulation, wanted: &JsValue) -> Result<(), JsValue> {
+    let integrator = text(wanted, "integrator").parse().map_err(|cause| error("SettingsError", cause))?;
+    let settings = Settings { h: number(wanted, "h"), integrator, ..*simulation.settings() };
+    if settings != *simulation.settings() {
+        simulation.set_settings(settings).map_err(|cause| error("StepError", cause))?;
+    }
+    let feedback = Feedback {
+        ks: number(wanted, "ks"),
+        kd: number(wanted, "kd"),
+        diagonal_drag: number(wanted, "diagonal_drag"),
+        elasticity: number(wanted, "elasticity"),
+    };
+    if feedback != *simulation.system().feedback() {
+        simulation.set_feedback(feedback).map_err(|cause| error("SettingsError", cause))?;
+    }
+    let (gravity, drag) = (point(wanted, "gravity"), number(wanted, "drag"));
+    if gravity != simulation.gravity() {
+        simulation.set_gravity(gravity).map_err(|cause| error("ForceError", cause))?;
+    }
+    if drag != simulation.drag() {
+        simulation.set_drag(drag).map_err(|cause| error("ForceError", cause))?;
+    }
+    let forms = text(wanted, "formulation");
+    if forms != formulation(simulation.system()) {
+        let chosen = match forms.as_str() {
+            "classic" => Formulation::Classic,
+            "modern" => Formulation::Modern,
+            _ => return Ok(()), // `mixed` is what a scene may be, not what a person can choose
+        };
+        simulation.set_formulation(chosen).map_err(|cause| error("StepError", cause))?;
+    }
+    Ok(())
+}
+
+/// Which forms the constraints have: all of one formulation, or mixed.
+fn formulation(system: &System) -> &'static str {
+    let classic = system.constraints().iter().map(|named| match &named.constraint {
+        Constraint::Distance(distance) => distance.form == DistanceForm::Squared,
+        Constraint::Nail(nail) => nail.form == NailForm::Scalar,
+    });
+    let (mut any, mut all) = (false, true);
+    for is_classic in classic {
+        any |= is_classic;
+        all &= is_classic;
+    }
+    match (any, all) {
+        (false, _) => "modern",
+        (true, true) => "classic",
+        (true, false) => "mixed",
+    }
+}
+
+/// A point of two or three components as the engine takes it; a missing component is zero.
+pub(crate) fn target(components: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|k| components.get(k).copied().unwrap_or(0.0))
+}

@@ -1,0 +1,163 @@
+//! qhat in the browser: conversions between the engine's types and JavaScript values. Nothing is computed here.
+//!
+//! The types that cross are declared in `types.d.ts` beside this file and become part of the generated declarations.
+
+mod convert;
+mod record;
+
+use qhat::{Integrator, ParticleId};
+use qhat_scene::Format;
+use record::{Record, error, list};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("types.d.ts");
+
+#[wasm_bindgen]
+extern "C" {
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Controls")]
+    pub type Controls;
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Structure")]
+    pub type Structure;
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Energy")]
+    pub type Energy;
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "StepReport")]
+    pub type StepReport;
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Projection")]
+    pub type Projection;
+    /// A record of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Terms")]
+    pub type Terms;
+    /// A list of records of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Shipped[]")]
+    pub type ShippedScenes;
+    /// A list of records of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "IntegratorFacts[]")]
+    pub type Integrators;
+    /// A list of strings.
+    #[wasm_bindgen(typescript_type = "string[]")]
+    pub type Strings;
+}
+
+/// The scenes that ship with qhat.
+#[wasm_bindgen]
+pub fn shipped_scenes() -> ShippedScenes {
+    let scenes = qhat_scene::shipped().iter();
+    let records = scenes.map(|scene| {
+        Record::new().with("name", scene.name).with("title", scene.title).with("text", scene.text)
+    });
+    list(records).unchecked_into()
+}
+
+/// The integrators, and what sets them apart for a person who chooses.
+#[wasm_bindgen]
+pub fn integrators() -> Integrators {
+    let records = Integrator::ALL.map(|integrator| {
+        Record::new()
+            .with("name", integrator.name())
+            .with("projects", integrator.projects())
+            .with("adaptive", integrator.is_adaptive())
+    });
+    list(records).unchecked_into()
+}
+
+/// A scene that runs.
+#[wasm_bindgen]
+pub struct Simulation {
+    inner: qhat::Simulation,
+    name: String,
+    description: String,
+}
+
+#[wasm_bindgen]
+impl Simulation {
+    /// Reads a scene, JSON if the name of its source says so, else TOML, and starts it. Throws `SceneErrors` or
+    /// `StepError`.
+    #[wasm_bindgen(constructor)]
+    pub fn new(text: &str, source_name: &str) -> Result<Simulation, JsValue> {
+        let scene = qhat_scene::load(text, source_name, Format::from_path(source_name)).map_err(|cause| error("SceneErrors", cause))?;
+        let inner = scene.simulation().map_err(|cause| error("StepError", cause))?;
+        Ok(Simulation { inner, name: scene.name, description: scene.description })
+    }
+
+    /// What the scene is made of, in its present forms.
+    pub fn structure(&self) -> Structure {
+        convert::structure(self.inner.system(), &self.name, &self.description)
+    }
+
+    /// t [s].
+    pub fn time(&self) -> f64 {
+        self.inner.state().time()
+    }
+
+    /// q [m]; a copy.
+    pub fn positions(&self) -> Vec<f64> {
+        self.inner.state().positions().to_vec()
+    }
+
+    /// q̇ [m/s]; a copy.
+    pub fn velocities(&self) -> Vec<f64> {
+        self.inner.state().velocities().to_vec()
+    }
+
+    /// Tension of every rod [N], positive where it pulls.
+    pub fn tension(&mut self) -> Vec<f64> {
+        self.inner.tension()
+    }
+
+    /// The energy account.
+    pub fn energy(&self) -> Energy {
+        convert::energy(&self.inner.energy()).finish()
+    }
+
+    /// Every symbol of the equation at this state.
+    pub fn terms(&mut self) -> Terms {
+        convert::terms(&self.inner.terms())
+    }
+
+    /// What it took to make the start consistent.
+    pub fn projection(&self) -> Projection {
+        convert::projection(self.inner.projection())
+    }
+
+    /// One step of h. Throws `StepError`; the last good state stays.
+    pub fn step(&mut self) -> Result<StepReport, JsValue> {
+        let report = self.inner.step().map_err(|cause| error("StepError", cause))?;
+        Ok(convert::report(&report))
+    }
+
+    /// Back to the start: state and forces; settings stay.
+    pub fn reset(&mut self) -> Result<(), JsValue> {
+        self.inner.reset().map_err(|cause| error("StepError", cause))
+    }
+
+    /// Everything the page's controls show.
+    pub fn controls(&self) -> Controls {
+        convert::controls(&self.inner)
+    }
+
+    /// Sets what differs from the present controls. Throws `SettingsError` or `StepError`.
+    pub fn set_controls(&mut self, controls: &Controls) -> Result<(), JsValue> {
+        convert::set_controls(&mut self.inner, controls)
+    }
+
+    /// Takes hold of a particle with a mouse spring towards a target [m].
+    pub fn grab(&mut self, particle: usize, target: &[f64]) -> Result<(), JsValue> {
+        self.inner.grab(ParticleId(particle), convert::target(target)).map_err(|cause| error("ForceError", cause))
+    }
+
+    /// Moves the target of the mouse spring [m].
+    pub fn drag_to(&mut self, target: &[f64]) -> Result<(), JsValue> {
+        self.inner.drag_to(convert::target(target)).map_err(|cause| error("ForceError", cause))
+    }
+
+    /// Lets go.
+    pub fn release(&mut self) {
+        self.inner.release();
+    }
+}

@@ -1,0 +1,143 @@
+// The records that cross the border between the engine and the page. Field names, and in Terms also their order, are
+// those of the Rust structs; arrays are flat, particle after particle: x1 y1 x2 y2 …; SI units.
+
+export type IntegratorName = 'euler' | 'symplectic-euler' | 'rk4' | 'rattle';
+/** `mixed`: a scene may write each constraint in the form it likes */
+export type FormulationName = 'modern' | 'classic' | 'mixed';
+
+export interface IntegratorFacts {
+  name: IntegratorName;
+  /** holds C = 0 and Ċ = 0 itself, and uses none of ks, kd, diagonal drag and elasticity */
+  projects: boolean;
+  /** chooses its own substeps within a frame of h */
+  adaptive: boolean;
+}
+
+/** A scene that ships with qhat. */
+export interface Shipped {
+  name: string;
+  title: string;
+  text: string;
+}
+
+export interface Rod {
+  name: string;
+  a: number;
+  b: number;
+  /** m */
+  length: number;
+  /** which multiplier is its own */
+  row: number;
+}
+
+export interface Nail {
+  name: string;
+  particle: number;
+  /** m, always three numbers */
+  at: number[];
+}
+
+export interface Spring {
+  a: number;
+  b: number;
+  /** m */
+  rest: number;
+}
+
+/** What a scene is made of: all that does not change while it runs. */
+export interface Structure {
+  name: string;
+  description: string;
+  dimension: 2 | 3;
+  particle_names: string[];
+  row_names: string[];
+  /** kg */
+  masses: Float64Array;
+  fixed: boolean[];
+  rods: Rod[];
+  nails: Nail[];
+  springs: Spring[];
+}
+
+/** Everything the page's controls set. */
+export interface Controls {
+  /** s */
+  h: number;
+  integrator: IntegratorName;
+  formulation: FormulationName;
+  /** 1/s² */
+  ks: number;
+  /** 1/s */
+  kd: number;
+  /** unit of A */
+  diagonal_drag: number;
+  /** in [0, 1): Q̂ is scaled by 1 − elasticity */
+  elasticity: number;
+  /** m/s², always three numbers */
+  gravity: number[];
+  /** N·s/m */
+  drag: number;
+}
+
+/** J */
+export interface Energy {
+  kinetic: number;
+  potential: number;
+  total: number;
+  /** T + V less all that came in since the start: constant for an exact integrator */
+  balance: number;
+}
+
+export interface StepReport {
+  substeps: number;
+  rejected: number;
+  factorizations: number;
+  iterations: number;
+  /** s */
+  smallest_substep: number;
+  max_residual: number;
+  max_residual_rate: number;
+  max_relative_length_error: number;
+  energy: Energy;
+  warnings: string[];
+}
+
+/** What it took to bring the start onto C = 0 and Ċ = 0. */
+export interface Projection {
+  /** m, the farthest a particle was moved; 0 if the start was consistent */
+  moved: number;
+  /** m/s */
+  velocity_changed: number;
+  residual_before: number;
+  iterations: number;
+}
+
+/** Every symbol of one evaluation, in the order it is computed. */
+export interface Terms {
+  /** s */
+  time: number;
+  positions: Float64Array;
+  velocities: Float64Array;
+  inverse_masses: Float64Array;
+  applied_forces: Float64Array;
+  residual: Float64Array;
+  residual_rate: Float64Array;
+  /** m × N, row after row; null where the system is too large to show */
+  jacobian: Float64Array | null;
+  acceleration_bias: Float64Array;
+  /** m × m, row after row, before ε; null where the system is too large to show */
+  constraint_matrix: Float64Array | null;
+  rhs_bias: Float64Array;
+  rhs_forces: Float64Array;
+  rhs_stiffness: Float64Array;
+  rhs_damping: Float64Array;
+  right_hand_side: Float64Array;
+  multipliers: Float64Array;
+  constraint_forces: Float64Array;
+  accelerations: Float64Array;
+  /** N, one per rod, signed: + is pull */
+  tension: Float64Array;
+  /** of A; null where A is singular and too large for the rank to be counted */
+  rank: number | null;
+  warnings: string[];
+}

@@ -1,0 +1,151 @@
+// The only file that knows the engine is WebAssembly. Everything else sees the class below and plain records.
+
+import start, {
+  type Controls,
+  type Energy,
+  type InitOutput,
+  type IntegratorFacts,
+  integrators as integratorFacts,
+  type Projection,
+  type Shipped,
+  type StepReport,
+  type Structure,
+  shipped_scenes,
+  type Terms,
+  Simulation as WasmSimulation,
+} from './wasm/qhat_wasm.js';
+
+export type {
+  Controls,
+  Energy,
+  FormulationName,
+  IntegratorFacts,
+  IntegratorName,
+  Nail,
+  Projection,
+  Rod,
+  Shipped,
+  Spring,
+  StepReport,
+  Structure,
+  Terms,
+} from './wasm/qhat_wasm.js';
+
+/** What the engine says when it refuses; `kind` is the Rust error's type. */
+export class EngineError extends Error {
+  constructor(
+    readonly kind: string,
+    message: string,
+  ) {
+    super(message);
+    this.name = 'EngineError';
+  }
+}
+
+let ready: Promise<InitOutput> | undefined;
+
+/** Fetches and compiles the engine, once. */
+export function startEngine(): Promise<InitOutput> {
+  ready ??= start();
+  return ready;
+}
+
+export function integrators(): IntegratorFacts[] {
+  return integratorFacts();
+}
+
+export function shippedScenes(): Shipped[] {
+  return shipped_scenes();
+}
+
+/** One running scene. The engine computes; this converts errors and frees the memory that JavaScript cannot see. */
+export class Simulation {
+  private readonly inner: WasmSimulation;
+
+  constructor(
+    readonly text: string,
+    readonly sourceName: string,
+  ) {
+    this.inner = attempt(() => new WasmSimulation(text, sourceName));
+  }
+
+  /** What the scene is made of; rows change with the forms. */
+  structure(): Structure {
+    return this.inner.structure();
+  }
+
+  get time(): number {
+    return this.inner.time();
+  }
+
+  /** m, flat; a copy */
+  positions(): Float64Array {
+    return this.inner.positions();
+  }
+
+  /** m/s, flat; a copy */
+  velocities(): Float64Array {
+    return this.inner.velocities();
+  }
+
+  /** N, one per rod, + is pull */
+  tension(): Float64Array {
+    return attempt(() => this.inner.tension());
+  }
+
+  energy(): Energy {
+    return attempt(() => this.inner.energy());
+  }
+
+  terms(): Terms {
+    return attempt(() => this.inner.terms());
+  }
+
+  /** What it took to make the start consistent. */
+  projection(): Projection {
+    return this.inner.projection();
+  }
+
+  /** One step of h. */
+  step(): StepReport {
+    return attempt(() => this.inner.step());
+  }
+
+  reset(): void {
+    attempt(() => this.inner.reset());
+  }
+
+  controls(): Controls {
+    return this.inner.controls();
+  }
+
+  setControls(controls: Controls): void {
+    attempt(() => this.inner.set_controls(controls));
+  }
+
+  /** Hangs a mouse spring on a particle; the engine scales its stiffness by the mass. */
+  grab(particle: number, target: readonly number[]): void {
+    attempt(() => this.inner.grab(particle, Float64Array.from(target)));
+  }
+
+  dragTo(target: readonly number[]): void {
+    attempt(() => this.inner.drag_to(Float64Array.from(target)));
+  }
+
+  release(): void {
+    this.inner.release();
+  }
+
+  free(): void {
+    this.inner.free();
+  }
+}
+
+function attempt<T>(call: () => T): T {
+  try {
+    return call();
+  } catch (error) {
+    if (error instanceof Error) throw new EngineError(error.name, error.message);
+    throw new EngineError('Error', String(error));
+  }
+}

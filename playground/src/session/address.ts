@@ -1,0 +1,7 @@
+// The address as the place where a scene is named.
+
+/** The scene named by `?scene=` or `#scene=`, or null where the address names none. */
+export function sceneInAddress(address: { search: string; hash: string }): string | null {
+  const query = new URLSearchParams(address.search).get('scene');
+  return query ?? new URLSearchParams(address.hash.replace(/^#/, '')).get('scene');
+}

@@ -1,0 +1,135 @@
+// What each control is called, what it does in one sentence, in which unit, over which range.
+
+import type { Controls } from '../engine';
+import type { LogRange } from './scale';
+
+export type NumberControl = 'gravity' | 'drag' | 'ks' | 'kd' | 'diagonal_drag' | 'elasticity' | 'h';
+
+export interface ControlSpec {
+  key: NumberControl;
+  label: string;
+  symbol: string;
+  unit: string;
+  sentence: string;
+  scale:
+    | ({ kind: 'log' } & LogRange & { zero: boolean })
+    | { kind: 'linear'; from: number; to: number; step: number };
+  /** works only in integrators that hold the constraints by feedback */
+  feedback: boolean;
+}
+
+/** The two menus of the source. */
+export const MENUS: readonly ControlSpec[] = [
+  {
+    key: 'diagonal_drag',
+    label: 'Diagonal drag',
+    symbol: 'ε',
+    unit: 'of A',
+    sentence:
+      'Adds ε to the diagonal of A, so that λ exists even where A is singular; the constraints give way a little for it.',
+    scale: { kind: 'log', from: 1e-6, to: 100, zero: true },
+    feedback: true,
+  },
+  {
+    key: 'elasticity',
+    label: 'Elasticity',
+    symbol: 'e',
+    unit: '',
+    sentence: 'Scales the constraint force Q̂ by 1 − e: rods get less rigid and explode later; 0 is off.',
+    scale: { kind: 'linear', from: 0, to: 0.99, step: 0.01 },
+    feedback: true,
+  },
+];
+
+export const FORCES: readonly ControlSpec[] = [
+  {
+    key: 'gravity',
+    label: 'Gravity',
+    symbol: 'g',
+    unit: 'm/s²',
+    sentence: 'Pulls every particle down with the same acceleration.',
+    scale: { kind: 'linear', from: 0, to: 30, step: 0.01 },
+    feedback: false,
+  },
+  {
+    key: 'drag',
+    label: 'Drag',
+    symbol: 'c',
+    unit: 'N·s/m',
+    sentence: 'Brakes every particle against its velocity, −c q̇, and so takes energy away.',
+    scale: { kind: 'log', from: 1e-3, to: 100, zero: true },
+    feedback: false,
+  },
+];
+
+export const FEEDBACK: readonly ControlSpec[] = [
+  {
+    key: 'ks',
+    label: 'Feedback stiffness',
+    symbol: 'ks',
+    unit: '1/s²',
+    sentence: 'Pulls a violated constraint back, as a spring of C̈ + kd Ċ + ks C = 0.',
+    scale: { kind: 'log', from: 0.1, to: 1e5, zero: true },
+    feedback: true,
+  },
+  {
+    key: 'kd',
+    label: 'Feedback damping',
+    symbol: 'kd',
+    unit: '1/s',
+    sentence: 'Damps that pull; explicit Euler needs ks·h < kd.',
+    scale: { kind: 'log', from: 0.1, to: 1e3, zero: true },
+    feedback: true,
+  },
+];
+
+export const STEP: ControlSpec = {
+  key: 'h',
+  label: 'Step',
+  symbol: 'h',
+  unit: 's',
+  sentence: 'Time from one state to the next: smaller is more exact and costs more.',
+  scale: { kind: 'log', from: 1e-4, to: 0.1, zero: false },
+  feedback: false,
+};
+
+export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
+  euler:
+    'The source’s method: the force now, held over the whole step. Drifts off the constraints and gains energy.',
+  'symplectic-euler':
+    'New velocity first, then positions with it: the energy stays near, the constraints still drift.',
+  rk4: 'Four force evaluations a step: small drift, never corrected without feedback.',
+  rattle: 'Projects positions and velocities onto the constraints at every step: no drift to correct.',
+};
+
+export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {
+  mixed: 'This scene writes each constraint in its own form; choosing one here changes them all.',
+  modern: 'C = |d| − r and x − p: λ is a force in newtons and a nail holds.',
+  classic: 'The source’s C = dᵀd − r² and |x − p|², whose gradient vanishes where the nail must hold.',
+};
+
+/** Gravity as one signed number along the direction the scene pulls in. */
+export function gravitySize(gravity: readonly number[], down: readonly number[]): number {
+  // + 0 turns −0, which a weightless scene would show, into 0
+  return gravity.reduce((sum, component, k) => sum + component * down[k], 0) + 0;
+}
+
+export function downOf(gravity: readonly number[], dimension: 2 | 3): number[] {
+  const size = Math.hypot(...gravity);
+  if (size > 0) return gravity.map((component) => component / size);
+  return dimension === 2 ? [0, -1, 0] : [0, 0, -1];
+}
+
+export function readControl(controls: Controls, key: NumberControl, down: readonly number[]): number {
+  return key === 'gravity' ? gravitySize(controls.gravity, down) : controls[key];
+}
+
+export function withControl(
+  controls: Controls,
+  key: NumberControl,
+  value: number,
+  down: readonly number[],
+): Controls {
+  if (key === 'gravity') return { ...controls, gravity: down.map((component) => component * value) };
+  return { ...controls, [key]: value };
+}

@@ -1,0 +1,66 @@
+// One simulation that is stepped until it says it cannot go on; then it keeps its last good state and the reason.
+
+import { type Controls, EngineError, Simulation, type StepReport } from '../engine';
+
+export class Run {
+  /** why it stopped, in the engine's words; null while it goes */
+  stopped: EngineError | null = null;
+  report: StepReport | null = null;
+  /** T + V less what came in, at the start, J: what is missing later is measured from here */
+  private balance: number;
+
+  private constructor(readonly simulation: Simulation) {
+    this.balance = simulation.energy().balance;
+  }
+
+  /** The energy parts as plotted, J. */
+  energy(): { kinetic: number; potential: number; total: number; missing: number } {
+    const { kinetic, potential, total, balance } = this.simulation.energy();
+    return { kinetic, potential, total, missing: balance - this.balance };
+  }
+
+  /** Throws EngineError where the text is no scene. */
+  static open(text: string, sourceName: string): Run {
+    return new Run(new Simulation(text, sourceName));
+  }
+
+  /** A second run of the same scene with its own controls, from the scene's start. */
+  beside(controls: Controls): Run {
+    const { text, sourceName } = this.simulation;
+    const run = Run.open(text, sourceName);
+    try {
+      run.simulation.setControls(controls);
+    } catch (error) {
+      run.close();
+      throw error;
+    }
+    return run;
+  }
+
+  /** One step of h; false where it has stopped. */
+  step(): boolean {
+    if (this.stopped) return false;
+    try {
+      this.report = this.simulation.step();
+      return true;
+    } catch (error) {
+      if (!(error instanceof EngineError)) throw error;
+      this.stopped = error;
+      return false;
+    }
+  }
+
+  /** Back to the start of the motion, under the controls as they are now. */
+  reset(): void {
+    const controls = this.simulation.controls();
+    this.simulation.reset();
+    this.balance = this.simulation.energy().balance;
+    this.simulation.setControls(controls);
+    this.stopped = null;
+    this.report = null;
+  }
+
+  close(): void {
+    this.simulation.free();
+  }
+}

@@ -1,0 +1,69 @@
+// The marks on the canvas: zig-zag springs, nails, fixed particles, arrows. Each takes screen coordinates in px.
+
+/** A spring from one point to another: straight ends, a zig-zag between whose turns do not depend on its length. */
+export function traceSpring(
+  context: CanvasRenderingContext2D,
+  ax: number,
+  ay: number,
+  bx: number,
+  by: number,
+  width: number,
+  turns: number,
+): void {
+  const length = Math.hypot(bx - ax, by - ay);
+  context.moveTo(ax, ay);
+  if (length > 1) {
+    const [ux, uy] = [(bx - ax) / length, (by - ay) / length];
+    const end = Math.min(0.2 * length, 14);
+    const coil = length - 2 * end;
+    for (let k = 0; k <= 2 * turns; k += 1) {
+      const along = end + (coil * (k + 0.5)) / (2 * turns + 1);
+      const side = k % 2 === 0 ? width : -width;
+      context.lineTo(ax + ux * along - uy * side, ay + uy * along + ux * side);
+    }
+  }
+  context.lineTo(bx, by);
+}
+
+/** A nail: a ring with a cross, drawn under its particle. */
+export function traceNail(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.moveTo(x + radius, y);
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  const arm = radius + 4;
+  context.moveTo(x - arm, y);
+  context.lineTo(x + arm, y);
+  context.moveTo(x, y - arm);
+  context.lineTo(x, y + arm);
+}
+
+/** A fixed particle: a square, because nothing moves it. */
+export function traceFixed(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.rect(x - radius, y - radius, 2 * radius, 2 * radius);
+}
+
+export function drawArrow(
+  context: CanvasRenderingContext2D,
+  x: number,
+  y: number,
+  dx: number,
+  dy: number,
+  label: string,
+): void {
+  const length = Math.hypot(dx, dy);
+  if (length < 2) return;
+  const [ux, uy] = [dx / length, dy / length];
+  const head = Math.min(9, 0.5 * length);
+  const [tx, ty] = [x + dx, y + dy];
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(tx - ux * head * 0.8, ty - uy * head * 0.8);
+  context.stroke();
+  context.beginPath();
+  context.moveTo(tx, ty);
+  context.lineTo(tx - ux * head - uy * head * 0.45, ty - uy * head + ux * head * 0.45);
+  context.lineTo(tx - ux * head + uy * head * 0.45, ty - uy * head - ux * head * 0.45);
+  context.fill();
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillText(label, tx + ux * 13, ty + uy * 13);
+}

@@ -1,0 +1,28 @@
+// What one drawn frame needs. Plain data: the drawing reads it and keeps nothing.
+
+import type { Structure } from '../engine';
+
+export type Selection = { kind: 'particle'; index: number } | { kind: 'rod'; index: number } | null;
+
+export interface Arrow {
+  particle: number;
+  /** N, flat of one particle */
+  force: number[];
+  colour: 'ink' | 'accent';
+  label: string;
+}
+
+export interface Picture {
+  structure: Structure;
+  positions: Float64Array;
+  /** N, one per rod */
+  tension: Float64Array;
+  /** N at the ends of the colour scale */
+  tensionLimit: number;
+  /** positions of the comparison run, or null */
+  ghost: Float64Array | null;
+  selection: Selection;
+  hover: Selection;
+  mouse: { particle: number; target: number[] } | null;
+  arrows: Arrow[];
+}

@@ -1,0 +1,37 @@
+import { describe, expect, it } from 'vitest';
+import { fixed, format, niceCeiling, vector } from '../../src/session/numbers';
+
+describe('numbers for people', () => {
+  it.each([
+    [0, '0'],
+    [-0, '0'],
+    [9.81, '9.81'],
+    [-9.81, '−9.81'],
+    [1234, '1230'],
+    [0.00012345, '1.2·10⁻⁴'],
+    [-3.4e12, '−3.4·10¹²'],
+    [Number.NaN, '–'],
+    [Infinity, '∞'],
+    [-Infinity, '−∞'],
+  ])('%d is %s', (value, text) => expect(format(value)).toBe(text));
+
+  it('keeps decimals where numbers run', () => {
+    expect(fixed(1, 2)).toBe('1.00');
+    expect(fixed(-0.126, 2)).toBe('−0.13');
+    expect(fixed(Number.NaN, 2)).toBe('–');
+  });
+
+  it('writes vectors', () => expect(vector([1, -2.5])).toBe('(1, −2.5)'));
+
+  it.each([
+    [0.7, 1],
+    [1, 1],
+    [1.01, 2],
+    [3, 5],
+    [5.5, 10],
+    [9810, 10000],
+    [0.03, 0.05],
+    [0, 1],
+    [Number.NaN, 1],
+  ])('the round number at or above %d is %d', (size, nice) => expect(niceCeiling(size)).toBe(nice));
+});

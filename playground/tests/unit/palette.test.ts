@@ -1,0 +1,48 @@
+import { describe, expect, it } from 'vitest';
+import { DARK, LIGHT, TENSION_STEPS, tensionColours, tensionStep } from '../../src/view/palette';
+
+type Rgb = [number, number, number];
+const parse = (css: string) => css.match(/\d+/g)!.map(Number) as Rgb;
+
+// Simulation of deuteranopia and protanopia in linear RGB: Machado, Oliveira, Fernandes (2009), severity 1.
+const BLINDNESS = {
+  deuteranopia: [0.367322, 0.860646, -0.227968, 0.280085, 0.672501, 0.047413, -0.01182, 0.04294, 0.968881],
+  protanopia: [0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998],
+  tritanopia: [1.255528, -0.076749, -0.178779, -0.078411, 0.930809, 0.147602, 0.004733, 0.691367, 0.3039],
+};
+
+function seen(colour: Rgb, matrix: readonly number[]): Rgb {
+  const linear = colour.map((x) => (x / 255) ** 2.2);
+  return [0, 1, 2].map((r) => {
+    const value = [0, 1, 2].reduce((sum, c) => sum + matrix[3 * r + c] * linear[c], 0);
+    return 255 * Math.max(0, Math.min(1, value)) ** (1 / 2.2);
+  }) as Rgb;
+}
+
+const distance = (a: Rgb, b: Rgb) => Math.hypot(...a.map((x, k) => x - b[k]));
+
+describe('the tension colours', () => {
+  it('put zero in the middle and the sign to its sides', () => {
+    const middle = (TENSION_STEPS - 1) / 2;
+    expect(tensionStep(0, 10)).toBe(middle);
+    expect(tensionStep(10, 10)).toBe(TENSION_STEPS - 1);
+    expect(tensionStep(-99, 10)).toBe(0);
+    expect(tensionStep(Number.NaN, 10)).toBe(middle);
+    expect(tensionStep(5, 0)).toBe(middle);
+  });
+
+  it.each(Object.entries(BLINDNESS))('differ under %s', (_, matrix) => {
+    for (const palette of [LIGHT, DARK]) {
+      const colours = tensionColours(palette).map(parse);
+      const [push, slack, pull] = [
+        colours[0],
+        colours[(TENSION_STEPS - 1) / 2],
+        colours[TENSION_STEPS - 1],
+      ].map((colour) => seen(colour, matrix));
+      // 60 of 441 is several times what is just told apart on a 3 px line
+      expect(distance(push, pull)).toBeGreaterThan(60);
+      expect(distance(push, slack)).toBeGreaterThan(60);
+      expect(distance(pull, slack)).toBeGreaterThan(60);
+    }
+  });
+});
