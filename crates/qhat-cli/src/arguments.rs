@@ -1,0 +1,114 @@
+//! The words of the command line.
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueHint};
+use qhat::Integrator;
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "Exit codes:
+  0  done
+  1  the motion diverged, or the constraints cannot all hold; what was reached is written and marked
+  2  bad input; nothing is written
+  130  interrupted with Ctrl-C; what was reached is written and marked";
+
+/// Particles held together by exact constraints, and the tension in every rod.
+#[derive(Debug, Parser)]
+#[command(name = "qhat", version, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Simulate a scene; write its trajectory and a summary
+    Run(Run),
+    /// Say what is wrong with a scene, or its degrees of freedom and rank
+    Check(Check),
+    /// Open a scene in the browser, to play with
+    Play(Play),
+    /// List the scenes that come with qhat, or print one to start from
+    Scenes(Scenes),
+    /// Print the JSON Schema of scene files
+    Schema,
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell that will read it
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Run {
+    /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: String,
+
+    /// Write the trajectory to this file; its ending says how: .npz (NumPy) or .csv
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Write over an output that exists
+    #[arg(long, requires = "output")]
+    pub(crate) force: bool,
+
+    /// How long to simulate [s], instead of what the scene says
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) duration: Option<f64>,
+
+    /// Into how many frames to divide the duration; one more is written, the start [default: duration / h]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) frames: Option<usize>,
+
+    /// The step, or the frame of an integrator that chooses its own steps [s], instead of what the scene says
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) h: Option<f64>,
+
+    /// How to integrate, instead of what the scene says
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Integrator::ALL.map(Integrator::name)))]
+    pub(crate) integrator: Option<String>,
+
+    /// Print the summary as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Show no progress, and print no summary unless it is asked for with --json
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Check {
+    /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: String,
+
+    /// Print the findings as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Play {
+    /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: Option<String>,
+
+    /// The port to listen on, on 127.0.0.1 only [default: 7407, or the next that is free]
+    #[arg(long, value_name = "PORT")]
+    pub(crate) port: Option<u16>,
+
+    /// Print the address and leave the browser alone
+    #[arg(long)]
+    pub(crate) no_open: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Scenes {
+    /// Print the text of this scene, to start from
+    pub(crate) name: Option<String>,
+
+    /// Print the list as JSON
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) json: bool,
+}

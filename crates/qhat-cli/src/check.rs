@@ -1,0 +1,186 @@
+//! `qhat check`: whether a scene is valid, and what its constraints leave free.
+//!
+//!     degrees of freedom    = coordinates of free particles − rank A
+//!     states of self-stress = rows on free particles − rank A
+
+use crate::arguments;
+use crate::failure::{Failure, NOT_REACHED};
+use crate::print::{self, count, small};
+use crate::source::Source;
+use qhat::{Integrator, Settings, Simulation, Terms, evaluate};
+use qhat_scene::{Scene, SceneErrors};
+use serde::Serialize;
+use serde_json::json;
+use std::process::ExitCode;
+
+/// Checks a scene.
+pub(crate) fn check(arguments: &arguments::Check) -> Result<ExitCode, Failure> {
+    let source = Source::read(&arguments.scene)?;
+    let scene = match source.load() {
+        Ok(scene) => scene,
+        Err(errors) => {
+            if arguments.json {
+                print::json(&invalid(&errors))?;
+            }
+            return Err(Failure::formatted(errors));
+        }
+    };
+    let findings = Findings::of(&scene);
+    if arguments.json {
+        print::json(&findings)?;
+    } else {
+        findings.print()?;
+    }
+    Ok(if findings.feasible { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+}
+
+fn invalid(errors: &SceneErrors) -> serde_json::Value {
+    let list = errors.errors.iter().map(
+        |error| json!({ "line": error.line, "column": error.column, "message": error.message, "help": error.help }),
+    );
+    json!({ "valid": false, "errors": list.collect::<Vec<_>>(), "more_errors": errors.more })
+}
+
+/// What a check of a valid scene finds.
+#[derive(Debug, Serialize)]
+struct Findings {
+    valid: bool,
+    scene: String,
+    dimension: usize,
+    particles: usize,
+    free_particles: usize,
+    rods: usize,
+    rows: usize,
+    rows_on_free_particles: usize,
+    /// max |C| where the file puts the particles.
+    max_residual_at_start: f64,
+    worst_row_at_start: Option<String>,
+    consistent_at_start: bool,
+    /// Whether there are positions near by at which every constraint holds, and how far they are \[m\].
+    feasible: bool,
+    start_moved: Option<f64>,
+    /// At those positions, and so for all that follows; none where A is singular and too large to be counted.
+    rank: Option<usize>,
+    degrees_of_freedom: Option<usize>,
+    states_of_self_stress: Option<usize>,
+    redundant: Option<bool>,
+    warnings: Vec<String>,
+}
+
+impl Findings {
+    fn of(scene: &Scene) -> Self {
+        let system = &scene.system;
+        let start = evaluate(system, &scene.state);
+        let relative = |row: usize| start.residual[row].abs() / system.row_scales()[row];
+        let worst = (0..system.row_count()).max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
+        let consistent = worst.is_none_or(|row| relative(row) <= scene.settings.constraint_tolerance);
+
+        // The integrator that projects finds the nearest start at which all holds, and sees A bare of diagonal drag.
+        let settings = Settings { integrator: Integrator::Rattle, ..scene.settings };
+        let simulation = Simulation::new(system.clone(), scene.state.clone(), settings);
+        let mut warnings: Vec<String> = Vec::new();
+        let (terms, moved) = match simulation {
+            Ok(mut simulation) => (simulation.terms(), Some(simulation.projection().moved)),
+            Err(error) => {
+                warnings.push(error.to_string());
+                (start.clone(), None)
+            }
+        };
+        let feasible = moved.is_some();
+        warnings.extend(terms.warnings.iter().filter(|_| feasible).map(ToString::to_string));
+
+        let free_particles = terms.inverse_masses.iter().filter(|&&w| w > 0.0).count();
+        let coordinates = free_particles * system.dimension();
+        let rows = rows_on_free_particles(&terms);
+        // Where the constraints cannot hold, the rank is that of no configuration the system can be in.
+        let rank = terms.rank.filter(|_| feasible);
+        Findings {
+            valid: true,
+            scene: scene.name.clone(),
+            dimension: system.dimension(),
+            particles: system.particle_count(),
+            free_particles,
+            rods: system.rods().count(),
+            rows: system.row_count(),
+            rows_on_free_particles: rows,
+            max_residual_at_start: start.residual.iter().fold(0.0, |max: f64, residual| max.max(residual.abs())),
+            worst_row_at_start: worst.filter(|_| !consistent).map(|row| system.row_names()[row].clone()),
+            consistent_at_start: consistent,
+            feasible,
+            start_moved: moved,
+            rank,
+            degrees_of_freedom: rank.map(|rank| coordinates.saturating_sub(rank)),
+            states_of_self_stress: rank.map(|rank| rows.saturating_sub(rank)),
+            // Where the rank is not counted, that is because A is singular.
+            redundant: feasible.then(|| rank.is_none_or(|rank| rank < rows)),
+            warnings,
+        }
+    }
+
+    fn print(&self) -> Result<(), Failure> {
+        let size = format!(
+            "{}, {} of them free to move, in {} dimensions",
+            count(self.particles, "particle"),
+            self.free_particles,
+            self.dimension
+        );
+        let rows = format!(
+            "{}, {} of them on free particles; {}",
+            count(self.rows, "row"),
+            self.rows_on_free_particles,
+            count(self.rods, "rod")
+        );
+        let mut lines = vec![("particles", size), ("constraints", rows), ("start", self.start())];
+        match (self.rank, self.degrees_of_freedom, self.states_of_self_stress) {
+            (Some(rank), Some(freedom), Some(stress)) => {
+                lines.push(("rank", format!("{rank}: {}", redundancy(stress))));
+                lines.push(("freedom", freedoms(freedom)));
+            }
+            _ if self.feasible => {
+                lines.push(("rank", "some rows are redundant; the system is too large to count them".into()));
+            }
+            _ => {}
+        }
+        lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        print::table(&format!("{}: {}", self.scene, self.verdict()), &lines)
+    }
+
+    fn verdict(&self) -> &'static str {
+        if self.feasible { "valid" } else { "valid, but its constraints cannot all hold" }
+    }
+
+    fn start(&self) -> String {
+        match (&self.worst_row_at_start, self.start_moved) {
+            (None, _) if self.max_residual_at_start == 0.0 => "every constraint holds exactly".into(),
+            (None, _) => format!("every constraint holds, to {}", small(self.max_residual_at_start)),
+            (Some(row), Some(moved)) => {
+                format!("`{row}` is the farthest off; every constraint holds after moves of up to {moved:.3e} m")
+            }
+            (Some(row), None) => {
+                format!("`{row}` is the farthest off, and no moves near by make every constraint hold")
+            }
+        }
+    }
+}
+
+fn rows_on_free_particles(terms: &Terms) -> usize {
+    let jacobian = &terms.jacobian;
+    let free = |row: &usize| jacobian.row(*row).any(|(particle, _)| terms.inverse_masses[particle.0] > 0.0);
+    (0..jacobian.row_count()).filter(free).count()
+}
+
+fn redundancy(states_of_self_stress: usize) -> String {
+    match states_of_self_stress {
+        0 => "no row is redundant, so every tension is unique".into(),
+        1 => "one row more than needed; one state of self-stress, so some tensions are not unique".into(),
+        k => format!("{k} rows more than needed; {k} states of self-stress, so some tensions are not unique"),
+    }
+}
+
+fn freedoms(degrees_of_freedom: usize) -> String {
+    match degrees_of_freedom {
+        0 => "0 degrees of freedom: nothing can move".into(),
+        1 => "1 degree of freedom".into(),
+        k => format!("{k} degrees of freedom"),
+    }
+}

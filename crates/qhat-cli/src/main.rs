@@ -1,0 +1,39 @@
+//! The `qhat` command: reads scenes, runs the engine, writes what came out. It computes no physics of its own.
+//!
+//! Exit codes: 0 done, 1 the motion diverged or the constraints cannot hold (what was reached is written and marked),
+//! 2 bad input, 130 interrupted.
+
+mod arguments;
+mod check;
+mod failure;
+mod play;
+mod print;
+mod run;
+mod scenes;
+mod source;
+mod trajectory;
+
+use arguments::{Arguments, Command};
+use clap::{CommandFactory, Parser};
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Play(arguments) => play::play(&arguments),
+        Command::Scenes(arguments) => scenes::scenes(&arguments),
+        Command::Schema => print::json(&qhat_scene::json_schema()).map(|()| ExitCode::SUCCESS),
+        Command::Completions { shell } => completions(shell),
+    };
+    outcome.unwrap_or_else(|failure| failure.report())
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<ExitCode, Failure> {
+    // Into memory first: the generator itself would panic on a closed pipe.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "qhat", &mut script);
+    print::bytes(&script)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,42 @@
+//! `qhat play`: the page, served from inside the command to this machine only.
+
+#[cfg(feature = "page")]
+mod answer;
+#[cfg(feature = "page")]
+mod page;
+#[cfg(feature = "page")]
+mod server;
+
+use crate::arguments;
+use crate::failure::Failure;
+use std::process::ExitCode;
+
+/// Serves the page until someone presses Ctrl-C.
+#[cfg(feature = "page")]
+pub(crate) fn play(arguments: &arguments::Play) -> Result<ExitCode, Failure> {
+    use crate::{print, source::Source};
+
+    let scene = arguments.scene.as_deref().map(Source::read).transpose()?;
+    if let Some(scene) = &scene {
+        // The page shows what is wrong as well, but whoever typed the command looks here.
+        scene.load().map_err(Failure::formatted)?;
+    }
+    let listener = server::listen(arguments.port)?;
+    let address = listener.local_addr().map_err(|error| Failure::io("cannot listen", &error))?;
+    let address = format!("http://{address}/");
+    let what = scene.as_ref().map_or(String::new(), |scene| format!(" with {}", scene.name));
+    print::text(&format!("qhat{what} is at {address} (end with Ctrl-C)"))?;
+    if !arguments.no_open {
+        server::open(&address);
+    }
+    server::serve(&listener, scene)
+}
+
+/// Says how to get a command that has the page.
+#[cfg(not(feature = "page"))]
+pub(crate) fn play(_: &arguments::Play) -> Result<ExitCode, Failure> {
+    Err(Failure::input(
+        "this qhat was built without its page; in a clone of its repository `make play` builds one that has it,\n\
+         and leaves it at target/release/qhat",
+    ))
+}

@@ -1,0 +1,54 @@
+//! The times at which a trajectory is written: t_i = i · duration / N, i = 0 … N.
+
+use crate::failure::Failure;
+use qhat::{Settings, SettingsError};
+
+/// More frames than this are a slip of the keyboard: a file of them has at least a gigabyte even for one particle.
+const MOST: f64 = 1e8;
+
+/// Equal frames over a duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frames {
+    /// \[s\].
+    pub(crate) duration: f64,
+    /// N; one more is written, the start.
+    pub(crate) count: usize,
+}
+
+impl Frames {
+    /// As many as asked for, else as many as h fits into the duration.
+    pub(crate) fn new(duration: f64, count: Option<usize>, settings: &Settings) -> Result<Self, Failure> {
+        if !(duration.is_finite() && duration > 0.0) {
+            return Err(Failure::input(format!("the duration must be positive and finite, but is {duration} s")));
+        }
+        let wanted = match count {
+            Some(count) => count as f64,
+            None => (duration / settings.h).round().max(1.0),
+        };
+        if wanted > MOST {
+            return Err(Failure::input(format!(
+                "{wanted:e} frames are more than the {MOST:e} that qhat writes; ask for fewer with --frames"
+            )));
+        }
+        Ok(Frames { duration, count: wanted as usize })
+    }
+
+    /// t_i \[s\].
+    pub(crate) fn time(&self, index: usize) -> f64 {
+        if index == 0 { 0.0 } else { index as f64 * self.duration / self.count as f64 }
+    }
+
+    /// t_{i+1} − t_i \[s\].
+    pub(crate) fn length(&self) -> f64 {
+        self.duration / self.count as f64
+    }
+
+    /// What to say when a fixed-step integrator cannot end a step at a frame.
+    pub(crate) fn refused(&self, error: &SettingsError, settings: &Settings) -> Failure {
+        Failure::input(format!(
+            "{error}\n`{}` takes steps of exactly h, and {} s in {} frames would end between two of them; \
+             choose --duration, --frames or --h so that they fit",
+            settings.integrator, self.duration, self.count
+        ))
+    }
+}

@@ -1,0 +1,141 @@
+//! `qhat run`: from a scene to a trajectory and a summary.
+
+mod frames;
+mod interrupt;
+mod origin;
+mod progress;
+mod summary;
+
+use crate::arguments;
+use crate::failure::{Failure, INTERRUPTED, NOT_REACHED, warn};
+use crate::print;
+use crate::source::Source;
+use crate::trajectory::{Recorder, Target};
+use cpu_time::ProcessTime;
+use frames::Frames;
+use interrupt::Interrupt;
+use origin::{Origin, Status};
+use progress::Progress;
+use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
+use std::process::ExitCode;
+use std::time::Instant;
+use summary::{Summary, Tally};
+
+/// Simulates a scene as the arguments say.
+pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
+    let began = Instant::now();
+    let source = Source::read(&arguments.scene)?;
+    let scene = source.load().map_err(Failure::formatted)?;
+    let settings = settings(arguments, scene.settings)?;
+    let frames = Frames::new(arguments.duration.unwrap_or(scene.duration), arguments.frames, &settings)?;
+    let target = arguments.output.as_deref().map(|path| Target::new(path, arguments.force)).transpose()?;
+    let output = target.as_ref().map(|target| target.path().display().to_string());
+    // Before there are files to leave behind.
+    let interrupt = Interrupt::watch()?;
+    let recorder = target.map(|target| Recorder::new(target, &scene.system)).transpose()?;
+    let mut origin = Origin::new(&source, &scene, &settings, frames);
+
+    let progress = Progress::new(frames, arguments.quiet);
+    let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt };
+    let (system, state) = (scene.system, scene.state);
+    let stopped = match Simulation::new(system.clone(), state.clone(), settings) {
+        Ok(simulation) => job.simulate(simulation)?,
+        // A start that cannot be made to hold is all that was reached.
+        Err(error) => {
+            job.start(&system, &evaluate(&system, &state))?;
+            Some(Stop::Error(error))
+        }
+    };
+    job.progress.finish();
+
+    origin.close(&job.tally, stopped.as_ref())?;
+    if let Some(recorder) = job.recorder {
+        recorder.finish(&serde_json::to_string(&origin).map_err(Failure::input)?)?;
+    }
+    let summary = Summary::new(&origin, &job.tally, began.elapsed(), output);
+    if arguments.json {
+        print::json(&summary)?;
+    } else if !arguments.quiet {
+        summary.print()?;
+    }
+    if let Some(message) = &origin.error {
+        warn(format!("{}: {message}", origin.status));
+    }
+    Ok(match origin.status {
+        Status::Done => ExitCode::SUCCESS,
+        Status::Diverged | Status::Infeasible => ExitCode::from(NOT_REACHED),
+        Status::Interrupted => ExitCode::from(INTERRUPTED),
+    })
+}
+
+/// The scene's settings with what the command line says instead.
+fn settings(arguments: &arguments::Run, scene: Settings) -> Result<Settings, Failure> {
+    let mut settings = scene;
+    if let Some(h) = arguments.h {
+        settings.h = h;
+    }
+    if let Some(name) = &arguments.integrator {
+        settings.integrator = name.parse().map_err(Failure::input)?;
+    }
+    settings.check().map_err(Failure::input)?;
+    Ok(settings)
+}
+
+/// Why a run ended before its time.
+enum Stop {
+    Error(StepError),
+    Interrupt,
+}
+
+/// A run at work.
+struct Job {
+    frames: Frames,
+    recorder: Option<Recorder>,
+    tally: Tally,
+    progress: Progress,
+    interrupt: Interrupt,
+}
+
+impl Job {
+    /// Steps from frame to frame; tells why it ended early, if it did.
+    fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
+        self.tally.moved = simulation.projection().moved;
+        let terms = simulation.terms();
+        self.start(simulation.system(), &terms)?;
+        for index in 1..=self.frames.count {
+            if self.interrupt.came() {
+                return Ok(Some(Stop::Interrupt));
+            }
+            let clock = ProcessTime::now();
+            let outcome = simulation.advance(self.frames.length());
+            self.tally.cpu += clock.elapsed();
+            self.tally.reached(&simulation);
+            match outcome {
+                Ok(report) => self.tally.step(&report),
+                // The frame does not fit h: the options are at fault, and nothing has moved.
+                Err(StepError::Settings(error)) => return Err(self.frames.refused(&error, simulation.settings())),
+                Err(error) => return Ok(Some(Stop::Error(error))),
+            }
+            if self.recorder.is_some() {
+                self.record(self.frames.time(index), &simulation.terms())?;
+            } else {
+                self.tally.frames += 1;
+            }
+            self.progress.at(index, self.frames.time(index));
+        }
+        Ok(None)
+    }
+
+    fn start(&mut self, system: &System, terms: &Terms) -> Result<(), Failure> {
+        self.tally.start(system, terms);
+        self.record(0.0, terms)
+    }
+
+    fn record(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
+        self.tally.frame(terms);
+        match &mut self.recorder {
+            Some(recorder) => recorder.frame(time, terms),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Where numbers come from: enough to make them again, and to know how the run ended.
+
+use super::Stop;
+use super::frames::Frames;
+use super::summary::Tally;
+use crate::failure::Failure;
+use crate::source::Source;
+use qhat::{Feedback, Settings, StepError};
+use qhat_scene::Scene;
+use serde::Serialize;
+use std::fmt;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Status {
+    /// It reached its end.
+    Done,
+    /// The motion became infinite, left its constraints, or needed ever smaller steps.
+    Diverged,
+    /// No positions near by satisfy the constraints.
+    Infeasible,
+    /// Someone pressed Ctrl-C.
+    Interrupted,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Status::Done => "done",
+            Status::Diverged => "diverged",
+            Status::Infeasible => "infeasible",
+            Status::Interrupted => "interrupted",
+        })
+    }
+}
+
+/// Written with every trajectory.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Origin {
+    qhat: &'static str,
+    pub(crate) status: Status,
+    pub(crate) error: Option<String>,
+    pub(crate) scene: String,
+    file: String,
+    scene_hash: String,
+    dimension: usize,
+    pub(crate) integrator: &'static str,
+    /// \[s\].
+    pub(crate) h: f64,
+    tolerance: f64,
+    constraint_tolerance: f64,
+    feedback: FeedbackInUse,
+    /// As asked for \[s\].
+    pub(crate) duration: f64,
+    /// As asked for, the start not counted.
+    frames_asked: usize,
+    /// t of the last good state \[s\].
+    pub(crate) time_reached: f64,
+    warnings: Vec<String>,
+}
+
+/// ks, kd, diagonal drag and elasticity, where the integrator uses them.
+#[derive(Clone, Debug, Serialize)]
+struct FeedbackInUse {
+    ks: f64,
+    kd: f64,
+    diagonal_drag: f64,
+    elasticity: f64,
+}
+
+impl Origin {
+    pub(super) fn new(source: &Source, scene: &Scene, settings: &Settings, frames: Frames) -> Self {
+        let projects = settings.integrator.projects();
+        let Feedback { ks, kd, diagonal_drag, elasticity } =
+            if projects { Feedback::NONE } else { *scene.system.feedback() };
+        Origin {
+            qhat: env!("CARGO_PKG_VERSION"),
+            status: Status::Done,
+            error: None,
+            scene: scene.name.clone(),
+            file: source.file_name(),
+            scene_hash: source.hash(),
+            dimension: scene.system.dimension(),
+            integrator: settings.integrator.name(),
+            h: settings.h,
+            tolerance: settings.tolerance,
+            constraint_tolerance: settings.constraint_tolerance,
+            feedback: FeedbackInUse { ks, kd, diagonal_drag, elasticity },
+            duration: frames.duration,
+            frames_asked: frames.count,
+            time_reached: 0.0,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Notes how it ended.
+    pub(super) fn close(&mut self, tally: &Tally, stopped: Option<&Stop>) -> Result<(), Failure> {
+        self.time_reached = tally.time_reached;
+        self.warnings.clone_from(&tally.warnings);
+        (self.status, self.error) = match stopped {
+            None => (Status::Done, None),
+            Some(Stop::Interrupt) => {
+                (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
+            }
+            Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
+            Some(Stop::Error(error @ StepError::NotSatisfied { .. })) => (Status::Infeasible, Some(error.to_string())),
+            Some(Stop::Error(error)) => (Status::Diverged, Some(error.to_string())),
+        };
+        Ok(())
+    }
+}

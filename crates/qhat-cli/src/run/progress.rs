@@ -1,0 +1,35 @@
+//! A bar on stderr, for a person at a terminal only. It has no colours, so `NO_COLOR` has nothing to switch off.
+
+use super::frames::Frames;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, IsTerminal};
+
+const TEMPLATE: &str = "{wide_bar} {percent:>3} %  {msg}  {eta} to go";
+
+/// How far a run is.
+pub(crate) struct Progress(ProgressBar);
+
+impl Progress {
+    /// A bar over the frames; none where nobody looks, or nobody wants it.
+    pub(crate) fn new(frames: Frames, quiet: bool) -> Self {
+        if quiet || !io::stderr().is_terminal() {
+            return Progress(ProgressBar::hidden());
+        }
+        let style = ProgressStyle::with_template(TEMPLATE).unwrap_or_else(|_| ProgressStyle::default_bar());
+        Progress(ProgressBar::new(frames.count as u64).with_style(style))
+    }
+
+    /// A frame is done.
+    pub(crate) fn at(&self, index: usize, time: f64) {
+        if self.0.is_hidden() {
+            return;
+        }
+        self.0.set_message(format!("t = {time:.2} s"));
+        self.0.set_position(index as u64);
+    }
+
+    /// Clears the line for what is printed next.
+    pub(crate) fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}

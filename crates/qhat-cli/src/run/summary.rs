@@ -1,0 +1,149 @@
+//! What a run tells at its end.
+
+use super::origin::{Origin, Status};
+use crate::failure::Failure;
+use crate::print::{self, count, small};
+use qhat::{Simulation, StepReport, System, Terms};
+use serde::Serialize;
+use std::time::Duration;
+
+/// Counts and maxima over a run.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    /// Frames reached, the start included.
+    pub(super) frames: usize,
+    substeps: usize,
+    rejected: usize,
+    max_residual: f64,
+    max_relative_length_error: f64,
+    energy_error: f64,
+    energy_error_max: f64,
+    /// How far the start had to be moved to be consistent \[m\].
+    pub(super) moved: f64,
+    /// t of the last good state \[s\].
+    pub(super) time_reached: f64,
+    pub(super) cpu: Duration,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Tally {
+    /// Notes the start: what is violated there counts as well.
+    pub(super) fn start(&mut self, system: &System, terms: &Terms) {
+        for rod in system.rods() {
+            let relative = terms.residual[rod.row].abs() / system.row_scales()[rod.row];
+            self.max_relative_length_error = self.max_relative_length_error.max(relative);
+        }
+    }
+
+    /// Notes a frame that is evaluated.
+    pub(super) fn frame(&mut self, terms: &Terms) {
+        self.frames += 1;
+        self.max_residual = terms.residual.iter().fold(self.max_residual, |max, residual| max.max(residual.abs()));
+        terms.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
+    }
+
+    /// Notes what it took to get to the next frame.
+    pub(super) fn step(&mut self, report: &StepReport) {
+        self.substeps += report.substeps;
+        self.rejected += report.rejected;
+        self.max_residual = self.max_residual.max(report.max_residual);
+        self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
+        report.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
+    }
+
+    /// Notes where the simulation stands, be it at a frame or where a step failed.
+    pub(super) fn reached(&mut self, simulation: &Simulation) {
+        self.time_reached = simulation.state().time();
+        self.energy_error = simulation.energy_error();
+        self.energy_error_max = simulation.energy_error_max();
+    }
+
+    fn warn(&mut self, warning: String) {
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+}
+
+/// The summary, as `--json` prints it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary<'a> {
+    status: Status,
+    error: Option<&'a str>,
+    scene: &'a str,
+    integrator: &'a str,
+    h: f64,
+    duration: f64,
+    time_reached: f64,
+    frames: usize,
+    substeps: usize,
+    rejected: usize,
+    wall_seconds: f64,
+    cpu_seconds: f64,
+    start_moved: f64,
+    max_residual: f64,
+    max_relative_length_error: f64,
+    energy_error: f64,
+    energy_error_max: f64,
+    warnings: &'a [String],
+    output: Option<String>,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(origin: &'a Origin, tally: &'a Tally, wall: Duration, output: Option<String>) -> Self {
+        Summary {
+            status: origin.status,
+            error: origin.error.as_deref(),
+            scene: &origin.scene,
+            integrator: origin.integrator,
+            h: origin.h,
+            duration: origin.duration,
+            time_reached: origin.time_reached,
+            frames: tally.frames,
+            substeps: tally.substeps,
+            rejected: tally.rejected,
+            wall_seconds: wall.as_secs_f64(),
+            cpu_seconds: tally.cpu.as_secs_f64(),
+            start_moved: tally.moved,
+            max_residual: tally.max_residual,
+            max_relative_length_error: tally.max_relative_length_error,
+            energy_error: tally.energy_error,
+            energy_error_max: tally.energy_error_max,
+            warnings: &tally.warnings,
+            output,
+        }
+    }
+
+    fn simulated(&self) -> String {
+        match self.status {
+            Status::Done => format!("{} s", self.duration),
+            _ => format!("{:.6} of {} s", self.time_reached, self.duration),
+        }
+    }
+
+    /// Prints it for a person.
+    pub(super) fn print(&self) -> Result<(), Failure> {
+        let mut lines = vec![
+            ("simulated", format!("{}, {}", self.simulated(), count(self.frames, "frame"))),
+            ("integrator", format!("{}, h = {} s, {}", self.integrator, self.h, count(self.substeps, "substep"))),
+            ("took", format!("{:.3} s, of it stepping {:.3} s of CPU time", self.wall_seconds, self.cpu_seconds)),
+            ("constraints", format!("off by at most {}", small(self.max_residual))),
+            ("rods", format!("off by at most {} of their length", small(self.max_relative_length_error))),
+            (
+                "energy",
+                format!(
+                    "unaccounted for: {} of the largest kinetic energy at the end, at most {}",
+                    small(self.energy_error),
+                    small(self.energy_error_max)
+                ),
+            ),
+        ];
+        if self.start_moved > 0.0 {
+            lines.push(("start", format!("moved by up to {:.1e} m, so that every constraint holds", self.start_moved)));
+        }
+        lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        lines
+            .push(("output", self.output.clone().unwrap_or_else(|| "none; -o FILE.npz or FILE.csv writes one".into())));
+        print::table(&format!("{}: {}", self.scene, self.status), &lines)
+    }
+}

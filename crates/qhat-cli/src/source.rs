@@ -1,0 +1,103 @@
+//! Where a scene comes from: a file, the scenes inside the command, or stdin.
+
+use crate::failure::Failure;
+use qhat_scene::{Format, Scene, SceneErrors, Shipped, shipped};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// Scenes have kilobytes, and the reader of scenes has a limit of its own; this one is for a stream without an end [bytes].
+const LARGEST: u64 = 64 << 20;
+
+/// The bytes of a scene and what to call it.
+#[derive(Debug)]
+pub(crate) struct Source {
+    /// As messages show it: the path, `pendulum.toml` for a shipped scene, or `stdin`.
+    pub(crate) name: String,
+    bytes: Vec<u8>,
+    format: Format,
+    /// The file, where it is one.
+    path: Option<PathBuf>,
+}
+
+impl Source {
+    /// Reads what the argument means: `-` is stdin, else a file of that name, else a shipped scene.
+    pub(crate) fn read(argument: &str) -> Result<Self, Failure> {
+        if argument == "-" {
+            let bytes = bytes(io::stdin().lock(), "stdin")?;
+            // A JSON scene is an object; no TOML begins with a brace.
+            let json = bytes.trim_ascii_start().starts_with(b"{");
+            let format = if json { Format::Json } else { Format::Toml };
+            return Ok(Source { name: "stdin".into(), bytes, format, path: None });
+        }
+        match File::open(argument) {
+            Ok(file) if file.metadata().is_ok_and(|metadata| metadata.is_dir()) => {
+                Err(Failure::input(format!("`{argument}` is a folder, not a scene file")))
+            }
+            Ok(file) => Ok(Source {
+                name: argument.into(),
+                bytes: bytes(file, argument)?,
+                format: Format::from_path(argument),
+                path: Some(argument.into()),
+            }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Source::shipped(argument),
+            Err(error) => Err(Failure::io(format!("cannot read `{argument}`"), &error)),
+        }
+    }
+
+    fn shipped(argument: &str) -> Result<Self, Failure> {
+        let Some(scene) = find_shipped(argument) else {
+            let message = format!("there is no file `{argument}`, and no scene of that name comes with qhat");
+            return Err(Failure::input(format!("{message}\n{}", available())));
+        };
+        let name = format!("{}.toml", scene.name);
+        Ok(Source { name, bytes: scene.text.into(), format: Format::Toml, path: None })
+    }
+
+    /// The bytes as they are now: of a file that may have been edited, read again.
+    #[cfg(feature = "page")]
+    pub(crate) fn current_bytes(&self) -> Vec<u8> {
+        let again = self.path.as_ref().and_then(|path| File::open(path).ok());
+        again.and_then(|file| bytes(file, &self.name).ok()).unwrap_or_else(|| self.bytes.clone())
+    }
+
+    /// The last part of the name.
+    pub(crate) fn file_name(&self) -> String {
+        let path = self.path.as_deref().unwrap_or(Path::new(&self.name));
+        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// The scene, or all that is wrong with it.
+    pub(crate) fn load(&self) -> Result<Scene, SceneErrors> {
+        qhat_scene::load_bytes(&self.bytes, &self.name, self.format)
+    }
+
+    /// A fingerprint of the text, so that numbers can be told to come from it.
+    pub(crate) fn hash(&self) -> String {
+        let digest = Sha256::digest(&self.bytes);
+        let hex: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        format!("sha256:{hex}")
+    }
+}
+
+/// The shipped scene of a name.
+pub(crate) fn find_shipped(name: &str) -> Option<&'static Shipped> {
+    shipped().iter().find(|scene| scene.name == name)
+}
+
+/// A line that names the shipped scenes.
+pub(crate) fn available() -> String {
+    let names: Vec<&str> = shipped().iter().map(|scene| scene.name).collect();
+    format!("scenes that come with qhat: {}", names.join(", "))
+}
+
+fn bytes(from: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let read = from.take(LARGEST + 1).read_to_end(&mut bytes);
+    read.map_err(|error| Failure::io(format!("cannot read `{name}`"), &error))?;
+    if bytes.len() as u64 > LARGEST {
+        return Err(Failure::input(format!("`{name}` is larger than {} MiB; no scene is", LARGEST >> 20)));
+    }
+    Ok(bytes)
+}

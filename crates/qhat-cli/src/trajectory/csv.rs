@@ -1,0 +1,72 @@
+//! CSV: a header, then one line a frame. A CSV has no place for its origin, so that goes into FILE.csv.json beside it.
+
+use super::target::Target;
+use crate::failure::Failure;
+use qhat::{System, Terms};
+use std::fmt::Write;
+use std::io;
+use tempfile::NamedTempFile;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A trajectory being written as CSV.
+pub(crate) struct Recorder {
+    target: Target,
+    csv: csv::Writer<NamedTempFile>,
+    number: String,
+}
+
+impl Recorder {
+    pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
+        let csv = csv::Writer::from_writer(target.temporary()?);
+        let mut recorder = Recorder { target, csv, number: String::new() };
+        recorder.csv.write_record(columns(system)).map_err(|error| recorder.failed(error))?;
+        Ok(recorder)
+    }
+
+    pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
+        let arrays: [&[f64]; 6] = [
+            &[time],
+            &terms.positions,
+            &terms.velocities,
+            &terms.constraint_forces,
+            &terms.multipliers,
+            &terms.tension,
+        ];
+        self.write(arrays.into_iter().flatten()).map_err(|error| self.failed(error))
+    }
+
+    pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
+        let file = self.csv.into_inner().map_err(|failed| self.target.cannot_write(failed.error()))?;
+        // The origin first: a CSV that is there always says where it comes from.
+        self.target.put_origin(origin)?;
+        self.target.put(file)
+    }
+
+    fn write<'a>(&mut self, numbers: impl Iterator<Item = &'a f64>) -> csv::Result<()> {
+        for number in numbers {
+            self.number.clear();
+            // The shortest decimal that reads back as the same bits, with an exponent where it is shorter.
+            let _ = write!(self.number, "{number:?}");
+            self.csv.write_field(&self.number)?;
+        }
+        self.csv.write_record(None::<&[u8]>)
+    }
+
+    fn failed(&self, error: csv::Error) -> Failure {
+        self.target.cannot_write(&io::Error::other(error))
+    }
+}
+
+/// `t`, then `bob.x` … of all particles, `bob.vx` …, the constraint forces `bob.fx` …, `row.multiplier` …, `rod.tension` ….
+fn columns(system: &System) -> Vec<String> {
+    let mut columns = vec!["t".to_owned()];
+    for quantity in ["", "v", "f"] {
+        for name in system.particle_names() {
+            columns.extend(AXES[..system.dimension()].iter().map(|axis| format!("{name}.{quantity}{axis}")));
+        }
+    }
+    columns.extend(system.row_names().iter().map(|row| format!("{row}.multiplier")));
+    columns.extend(system.rods().map(|rod| format!("{}.tension", rod.name)));
+    columns
+}

@@ -1,0 +1,68 @@
+//! Trajectories on disk: one row of every array a frame, written as it comes, in place only when all of it is there.
+
+mod csv;
+mod npy;
+mod npz;
+mod target;
+
+pub(crate) use target::Target;
+
+use crate::failure::Failure;
+use qhat::{System, Terms};
+use std::path::Path;
+
+/// What the ending of a file name asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// Arrays for NumPy.
+    Npz,
+    /// One line a frame.
+    Csv,
+}
+
+impl Format {
+    /// The format that the ending of a file name stands for.
+    pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("npz") => Ok(Format::Npz),
+            Some("csv") => Ok(Format::Csv),
+            _ => Err(Failure::input(format!(
+                "cannot tell from its ending how to write `{}`; end the name in .npz (NumPy arrays) or .csv",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// A trajectory being written.
+pub(crate) enum Recorder {
+    Npz(npz::Recorder),
+    Csv(csv::Recorder),
+}
+
+impl Recorder {
+    /// Opens temporary files beside the target.
+    pub(crate) fn new(target: Target, system: &System) -> Result<Self, Failure> {
+        match target.format() {
+            Format::Npz => npz::Recorder::new(target, system).map(Recorder::Npz),
+            Format::Csv => csv::Recorder::new(target, system).map(Recorder::Csv),
+        }
+    }
+
+    /// Adds a frame: t \[s\] and everything evaluated there.
+    pub(crate) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
+        match self {
+            Recorder::Npz(recorder) => recorder.frame(time, terms),
+            Recorder::Csv(recorder) => recorder.frame(time, terms),
+        }
+    }
+
+    /// Puts the finished files in place; `origin` is a line of JSON that says where the numbers come from.
+    pub(crate) fn finish(self, origin: &str) -> Result<(), Failure> {
+        match self {
+            Recorder::Npz(recorder) => recorder.finish(origin),
+            Recorder::Csv(recorder) => recorder.finish(origin),
+        }
+    }
+}

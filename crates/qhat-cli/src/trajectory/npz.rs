@@ -1,0 +1,104 @@
+//! NPZ: a zip of one NPY file an array, as `numpy.load` reads it, without pickles.
+//!
+//! How many frames there will be is not known before the end (a run may diverge), and an NPY file tells its shape at the
+//! start; so each array grows in a file of its own, and the zip is put together at the end.
+
+use super::npy;
+use super::target::Target;
+use crate::failure::Failure;
+use qhat::{System, Terms};
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Seek, Write};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// From this size on a member of a zip needs the wide headers [bytes]; small ones are left readable for simple readers.
+const WIDE: u64 = u32::MAX as u64 / 2;
+
+/// One array, growing by a row a frame.
+struct Array {
+    name: &'static str,
+    /// Of one row.
+    shape: Vec<usize>,
+    file: BufWriter<File>,
+}
+
+impl Array {
+    fn append(&mut self, numbers: &[f64]) -> io::Result<()> {
+        numbers.iter().try_for_each(|number| self.file.write_all(&number.to_le_bytes()))
+    }
+}
+
+/// A trajectory being written as NPZ.
+pub(crate) struct Recorder {
+    target: Target,
+    frames: usize,
+    arrays: [Array; 6],
+    names: [(&'static str, Vec<String>); 3],
+}
+
+impl Recorder {
+    pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
+        let (n, d, m) = (system.particle_count(), system.dimension(), system.row_count());
+        let rods: Vec<String> = system.rods().map(|rod| rod.name.to_owned()).collect();
+        let array = |name, shape: &[usize]| -> Result<Array, Failure> {
+            Ok(Array { name, shape: shape.to_vec(), file: BufWriter::new(target.scratch()?) })
+        };
+        let arrays = [
+            array("t", &[])?,
+            array("positions", &[n, d])?,
+            array("velocities", &[n, d])?,
+            array("constraint_forces", &[n, d])?,
+            array("multipliers", &[m])?,
+            array("tension", &[rods.len()])?,
+        ];
+        let names = [
+            ("particle_ids", system.particle_names().to_vec()),
+            ("row_names", system.row_names().to_vec()),
+            ("rod_names", rods),
+        ];
+        Ok(Recorder { target, frames: 0, arrays, names })
+    }
+
+    pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
+        let rows: [&[f64]; 6] = [
+            &[time],
+            &terms.positions,
+            &terms.velocities,
+            &terms.constraint_forces,
+            &terms.multipliers,
+            &terms.tension,
+        ];
+        self.frames += 1;
+        let mut arrays = self.arrays.iter_mut().zip(rows);
+        arrays.try_for_each(|(array, row)| array.append(row)).map_err(|error| self.target.cannot_write(&error))
+    }
+
+    pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
+        let target = self.target;
+        let file = target.temporary()?;
+        // The bytes depend on the scene and the settings alone, so that two runs can be compared: no time of writing.
+        let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
+        let pack = || -> io::Result<()> {
+            let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
+            for array in self.arrays {
+                let shape = [&[self.frames], array.shape.as_slice()].concat();
+                let mut numbers = array.file.into_inner()?;
+                let wide = numbers.stream_position()? > WIDE;
+                numbers.rewind()?;
+                zip.start_file(format!("{}.npy", array.name), options.large_file(wide))?;
+                zip.write_all(&npy::header(npy::FLOAT64, &shape))?;
+                io::copy(&mut BufReader::new(numbers), &mut zip)?;
+            }
+            for (name, texts) in &self.names {
+                zip.start_file(format!("{name}.npy"), options)?;
+                zip.write_all(&npy::texts(&[texts.len()], texts))?;
+            }
+            zip.start_file("origin.npy", options)?;
+            zip.write_all(&npy::texts(&[], &[origin]))?;
+            zip.finish()?.flush()
+        };
+        pack().map_err(|error| target.cannot_write(&error))?;
+        target.put(file)
+    }
+}

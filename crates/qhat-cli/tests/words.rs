@@ -1,0 +1,106 @@
+//! Scenes, schema, completions, help; and every command in the guide.
+
+mod common;
+
+use common::{Folder, QHAT};
+use std::process::{Command, Stdio};
+
+#[test]
+fn scenes_are_listed_and_printed() {
+    let folder = Folder::new();
+    let list = folder.qhat(&["scenes", "--json"]).well().json();
+    let list = list.as_array().unwrap();
+    let said = folder.qhat(&["scenes"]).well().stdout;
+    for scene in list {
+        let name = scene["name"].as_str().unwrap();
+        for key in ["name", "title", "description"] {
+            assert!(said.contains(scene[key].as_str().unwrap()), "{scene}");
+        }
+        let text = folder.qhat(&["scenes", name]).well().stdout;
+        assert!(text.contains("schema = \"qhat/1\""), "{name}");
+        // What is printed can be read again.
+        folder.qhat_reading(&text, &["check", "-"]).well();
+    }
+    assert!(list.iter().any(|scene| scene["name"] == "pendulum"));
+}
+
+#[test]
+fn schema_is_json() {
+    let schema = Folder::new().qhat(&["schema"]).well().json();
+    assert!(schema["properties"]["particles"].is_object());
+}
+
+#[test]
+fn completions_for_every_shell() {
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = Folder::new().qhat(&["completions", shell]).well().stdout;
+        assert!(script.contains("qhat") && script.contains("integrator"), "{shell}");
+    }
+}
+
+#[test]
+fn help_says_the_exit_codes_and_version_the_version() {
+    let help = Folder::new().qhat(&["--help"]).well().stdout;
+    assert!(help.contains("Exit codes:") && help.contains("completions"), "{help}");
+    let version = Folder::new().qhat(&["--version"]).well().stdout;
+    assert_eq!(version, format!("qhat {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn a_reader_that_went_away_is_no_error() {
+    for arguments in
+        [&["schema"][..], &["scenes"], &["completions", "zsh"], &["check", "pendulum"], &["run", "pendulum", "--json"]]
+    {
+        let mut command = Command::new(QHAT);
+        let mut child = command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(
+            (output.status.code(), String::from_utf8(output.stderr).unwrap()),
+            (Some(0), String::new()),
+            "{arguments:?}"
+        );
+    }
+}
+
+#[test]
+fn no_colours_reach_a_pipe() {
+    let folder = Folder::new();
+    for arguments in [&["--help"][..], &["run", "nothing"], &["run", "--h"], &["run", "pendulum", "--duration", "0.1"]]
+    {
+        let ran = folder.qhat(arguments);
+        assert!(!ran.stdout.contains('\u{1b}') && !ran.stderr.contains('\u{1b}'), "{arguments:?}");
+    }
+}
+
+/// The lines of a document that begin with a command, indented as code.
+#[cfg(unix)]
+fn commands(document: &str, start: &str) -> Vec<String> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(document);
+    let text = std::fs::read_to_string(path).unwrap();
+    let lines = text.lines().filter_map(|line| line.strip_prefix("    ")?.strip_prefix(start));
+    // The page does not end by itself; tests/play.rs has it.
+    lines.filter(|line| !line.starts_with("play")).map(|line| format!("qhat {line}")).collect()
+}
+
+#[test]
+#[cfg(unix)]
+fn every_command_in_the_documents_runs() {
+    for (document, start) in [("docs/command.md", "qhat "), ("README.md", "target/release/qhat ")] {
+        let folder = Folder::new();
+        let lines = commands(document, start);
+        assert!(lines.len() >= 3, "{document} has commands");
+        let qhat = format!("qhat() {{ '{QHAT}' \"$@\"; }}");
+        for line in lines {
+            // One after the other in one folder: later lines use what earlier ones wrote.
+            let script = format!("{qhat}\n{line}");
+            let output = Command::new("sh").args(["-c", &script]).current_dir(folder.root()).output().unwrap();
+            assert_eq!(
+                output.status.code(),
+                Some(0),
+                "{document}: {line}: {}",
+                String::from_utf8_lossy(&output.stderr)
+            );
+        }
+    }
+}
