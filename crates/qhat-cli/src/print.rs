@@ -31,7 +31,13 @@ pub(crate) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
 
 /// Text that moves nothing on a terminal: names come from scenes, and a scene may come from anywhere.
 pub(crate) fn plain(text: &str) -> String {
-    let fit = |character: char| if character.is_control() && character != '\n' { '\u{FFFD}' } else { character };
+    let fit = |character: char| match character {
+        '\n' => character,
+        // These turn the direction of writing, so that a line could say what it does not.
+        '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => '\u{FFFD}',
+        character if character.is_control() => '\u{FFFD}',
+        character => character,
+    };
     text.chars().map(fit).collect()
 }
 

@@ -33,7 +33,9 @@ impl Source {
         }
         match File::open(argument) {
             Ok(file) if file.metadata().is_ok_and(|metadata| metadata.is_dir()) => {
-                Err(Failure::input(format!("`{argument}` is a folder, not a scene file")))
+                // A folder called `net` is no reason to hide the scene.
+                let folder = format!("`{argument}` is a folder, not a scene file");
+                Source::shipped(argument).map_err(|_| Failure::input(folder))
             }
             Ok(file) => Ok(Source {
                 name: argument.into(),

@@ -86,6 +86,14 @@ fn numbers_out_of_range_are_refused() {
 }
 
 #[test]
+fn what_a_scene_says_moves_nothing_on_the_terminal() {
+    let hostile = PENDULUM.replace("A bob", "A \\u001b[2Jbob\\u202e");
+    let said = Folder::new().qhat_reading(&hostile, &["run", "-"]).stdout;
+    assert!(said.chars().all(|character| character == '\n' || !character.is_control()), "{said:?}");
+    assert!(!said.contains('\u{202e}'), "{said:?}");
+}
+
+#[test]
 #[cfg(unix)]
 fn an_interrupted_run_keeps_and_marks_what_was_reached() {
     use std::process::{Command, Stdio};
