@@ -1,7 +1,9 @@
 //! `qhat check`: whether a scene is valid, and what its constraints leave free.
 //!
-//!     degrees of freedom    = coordinates of free particles − rank A
-//!     states of self-stress = rows on free particles − rank A
+//! ```text
+//! degrees of freedom    = coordinates of free particles − rank A
+//! states of self-stress = rows on free particles − rank A
+//! ```
 
 use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};

@@ -42,10 +42,10 @@ fn forces_belong_to_the_state_of_their_own_frame() {
         let r = (x * x + y * y).sqrt();
         // The rod carries the weight along it and the centripetal force: m (v² − g·x)/r with m = 2 kg.
         let expected = 2.0 * ((vx * vx + vy * vy) - 9.81 * y) / r;
-        let scale = ROUNDOFF * (1.0 + expected.abs()) + 1e-7; // 1e-7 N: Ċ = 0 holds to 1e-8 m/s, not exactly
+        let scale = ROUNDOFF * (1.0 + expected.abs());
         assert!((tension[frame] - expected).abs() <= scale, "frame {frame}: {} N, not {expected} N", tension[frame]);
-        assert!((force[4 * frame + 2] + tension[frame] * x / r).abs() <= ROUNDOFF * (1.0 + expected.abs()));
-        assert!((force[4 * frame + 3] + tension[frame] * y / r).abs() <= ROUNDOFF * (1.0 + expected.abs()));
+        assert!((force[4 * frame + 2] + tension[frame] * x / r).abs() <= scale);
+        assert!((force[4 * frame + 3] + tension[frame] * y / r).abs() <= scale);
     }
 }
 
