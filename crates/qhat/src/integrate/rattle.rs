@@ -241,10 +241,11 @@ fn substep<const D: usize>(
         qd[k] += scratch.push[k] / h;
     }
 
-    // Forces at q' with the velocity they lead to: second order also where they depend on it.
+    // Forces at q' with the velocity they lead to, the second half of the constraint's push included: second order also
+    // where they depend on it.
     equation.apply_forces(system, Motion::<D> { q, qd });
     for k in 0..qd.len() {
-        scratch.kick[k] = qd[k] + 0.5 * h * equation.WQ[k];
+        scratch.kick[k] = qd[k] + 0.5 * h * equation.WQ[k] + scratch.push[k] / h;
     }
     equation.apply_forces(system, Motion::<D> { q, qd: &scratch.kick });
     for k in 0..qd.len() {
