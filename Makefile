@@ -7,7 +7,7 @@ MAKEFLAGS += --no-builtin-rules --no-print-directory
 # thing at a time, and a -j given to it is kept from cargo, which would look for make's job tokens in vain.
 .NOTPARALLEL:
 unexport MAKEFLAGS MFLAGS
-.PHONY: help play build page test tests check lint docs clean FORCE
+.PHONY: help play build page test tests check lint docs bench clean FORCE
 
 # The command is always compiled with its page, so that no target undoes the work of another.
 WORKSPACE := --workspace --features qhat-cli/page
@@ -68,6 +68,10 @@ lint: page
 docs: ## the Rust documentation, in target/doc
 	@echo "Building the documentation"
 	@RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+
+bench: ## time, residual and energy error of every shipped scene, into benches/results
+	@echo "Running every shipped scene three times"
+	@cargo run --release --quiet --package qhat-bench
 
 clean: ## remove everything that was built (npm packages and cached tools stay)
 	@cargo clean --quiet

@@ -29,7 +29,7 @@ pub struct Simulation {
     balance: f64,
     largest_kinetic: f64,
     energy_floor: f64,
-    energy_error_max: f64,
+    largest_missing: f64,
 }
 
 impl Simulation {
@@ -47,7 +47,7 @@ impl Simulation {
             balance: 0.0,
             largest_kinetic: 0.0,
             energy_floor: 0.0,
-            energy_error_max: 0.0,
+            largest_missing: 0.0,
             system,
             state,
             settings,
@@ -65,7 +65,7 @@ impl Simulation {
         let energy = self.energy();
         self.balance = energy.balance();
         self.largest_kinetic = energy.kinetic;
-        self.energy_error_max = 0.0;
+        self.largest_missing = 0.0;
         Ok(())
     }
 
@@ -99,7 +99,7 @@ impl Simulation {
 
     fn note_energy(&mut self) {
         self.largest_kinetic = self.largest_kinetic.max(self.energy().kinetic);
-        self.energy_error_max = self.energy_error_max.max(self.energy_error().abs());
+        self.largest_missing = self.largest_missing.max(self.missing_energy().abs());
     }
 
     /// Back to where it started, with nothing held; settings, forces and forms stay as they are now.
@@ -149,17 +149,25 @@ impl Simulation {
         measure::energy(&self.system, &self.state)
     }
 
-    /// What is missing in the energy account, over the largest kinetic energy so far (at least a millionth of the work that
-    /// the applied forces could do over the system's own length, so that a structure at rest divides by something).
-    pub fn energy_error(&self) -> f64 {
-        let missing = self.energy().balance() - self.balance;
-        let scale = self.largest_kinetic.max(self.energy_floor);
-        if missing == 0.0 { 0.0 } else { missing / scale }
+    /// What is missing in the energy account at the present state [J]; negative where energy was lost.
+    fn missing_energy(&self) -> f64 {
+        self.energy().balance() - self.balance
     }
 
-    /// The largest |energy error| of all steps so far.
+    /// What is missing in the energy account, over the largest kinetic energy so far (at least a millionth of the work that
+    /// the applied forces could do over the system's own length, so that a structure at rest divides by something).
+    /// Negative where energy was lost.
+    pub fn energy_error(&self) -> f64 {
+        self.relative_energy(self.missing_energy())
+    }
+
+    /// The largest that was missing after any step so far, over the same.
     pub fn energy_error_max(&self) -> f64 {
-        self.energy_error_max
+        self.relative_energy(self.largest_missing)
+    }
+
+    fn relative_energy(&self, energy: f64) -> f64 {
+        if energy == 0.0 { 0.0 } else { energy / self.largest_kinetic.max(self.energy_floor) }
     }
 
     /// The feedback that acts: none where the integrator projects.
