@@ -26,7 +26,7 @@ export const MENUS: readonly ControlSpec[] = [
     symbol: 'ε',
     unit: 'of A',
     sentence:
-      'Adds ε to the diagonal of A, so that λ exists even where A is singular; the constraints give way a little for it.',
+      'Adds ε to the diagonal of A: λ exists even where A is singular, and the constraints give a little.',
     scale: { kind: 'log', from: 1e-6, to: 100, zero: true },
     feedback: true,
   },
@@ -35,7 +35,7 @@ export const MENUS: readonly ControlSpec[] = [
     label: 'Elasticity',
     symbol: 'e',
     unit: '',
-    sentence: 'Scales the constraint force Q̂ by 1 − e: rods get less rigid and explode later; 0 is off.',
+    sentence: 'Scales the constraint force Q̂ by 1 − e: less rigid, slower to explode; 0 is off.',
     scale: { kind: 'linear', from: 0, to: 0.99, step: 0.01 },
     feedback: true,
   },

@@ -3,7 +3,7 @@
 import { type Shipped, shippedScenes } from '../engine';
 
 /** The first thing a visitor sees: alive at once, and asking to be pulled. */
-export const DEFAULT_SCENE = 'net';
+export const DEFAULT_SCENE = 'strandbeest';
 
 export interface SceneSource {
   /** the name in the address; null for a scene that came from the command */

@@ -24,6 +24,9 @@ import { DEFAULT_SCENE, type SceneSource, sceneFromCommand, shipped } from './sc
 /** Panels with numbers are refreshed this often; faster nobody reads. */
 const PANEL_INTERVAL_MS = 100;
 
+/** A condition that held for one step only would flash by; its words stay this long after it was last met. */
+const WARNING_STAYS_MS = 3000;
+
 /** Traces of the history, in this order. */
 export const TRACES = ['time', 'kinetic', 'potential', 'total', 'missing', 'residual', 'ghost'] as const;
 
@@ -57,7 +60,7 @@ export class Session {
   compare = $state(false);
   ghostIntegrator = $state<Controls['integrator']>('euler');
   ghostFormulation = $state<Controls['formulation']>('modern');
-  ghostStopped = $state.raw<{ message: string; time: number } | null>(null);
+  ghostStopped = $state.raw<string | null>(null);
   ghostResidual = $state(0);
 
   selection = $state.raw<Selection>(null);
@@ -77,7 +80,9 @@ export class Session {
   /** called when another scene is there, to fit the view */
   onScene: () => void = () => {};
   private lastPanelMs = 0;
+  private warnedMs = -Infinity;
 
+  /** `down` of gravity, a unit vector. */
   get down(): number[] {
     return downOf(this.original?.gravity ?? [], this.structure?.dimension ?? 2);
   }
@@ -156,6 +161,7 @@ export class Session {
     this.stopped = null;
     this.ghostStopped = null;
     this.warnings = this.startWarnings();
+    this.warnedMs = performance.now();
     this.history.clear();
     this.clock.restart();
     this.fraction = 1;
@@ -166,7 +172,8 @@ export class Session {
   /** A start that was not consistent is moved, and a person who wrote it wants to know. */
   private startWarnings(): string[] {
     const projection = this.run?.simulation.projection();
-    if (!projection || (projection.moved === 0 && projection.velocity_changed === 0)) return [];
+    if (!projection || this.run!.simulation.time > 0) return [];
+    if (projection.moved === 0 && projection.velocity_changed === 0) return [];
     const moved = `${format(projection.moved)} m and ${format(projection.velocity_changed)} m/s`;
     return [`The start did not satisfy the constraints; it was moved onto them, by at most ${moved}.`];
   }
@@ -253,7 +260,7 @@ export class Session {
       try {
         this.ghost = this.run.beside(this.ghostControls(this.controls));
       } catch (error) {
-        this.ghostStopped = { message: error instanceof Error ? error.message : String(error), time: 0 };
+        this.ghostStopped = error instanceof Error ? error.message : String(error);
         return;
       }
     }
@@ -316,8 +323,12 @@ export class Session {
       this.stopped = run.stopped;
       return false;
     }
+    if (run.report!.warnings.length > 0) {
+      this.warnings = run.report!.warnings;
+      this.warnedMs = performance.now();
+    }
     if (this.ghost && !this.ghost.stopped && !this.ghost.step()) {
-      this.ghostStopped = { message: this.ghost.stopped!.message, time: this.ghost.simulation.time };
+      this.ghostStopped = this.ghost.stopped!.message;
     }
     return true;
   }
@@ -346,9 +357,11 @@ export class Session {
     this.residual = report?.max_residual ?? 0;
     this.lengthError = report?.max_relative_length_error ?? 0;
     this.ghostResidual = this.ghost?.report?.max_residual ?? 0;
-    if (report && simulation.time > 0) this.warnings = report.warnings;
-    const wanted = this.termsOpen || this.selection !== null;
+    const wanted = this.termsOpen || this.selection !== null || !this.running;
     this.terms = wanted ? this.readTerms() : null;
+    // a state that stands still is judged by itself, whatever the step before it met
+    if (!this.running && this.terms) this.warnings = [...this.startWarnings(), ...this.terms.warnings];
+    else if (performance.now() - this.warnedMs > WARNING_STAYS_MS) this.warnings = [];
     this.tick += 1;
   }
 

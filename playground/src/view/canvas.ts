@@ -7,6 +7,9 @@ import { drawArrow, traceFixed, traceNail, traceSpring } from './marks';
 import { DARK, LIGHT, type Palette, TENSION_STEPS, tensionColours, tensionStep } from './palette';
 import type { Picture, Selection } from './picture';
 
+/** A usual ball's radius is at most this part of a mean rod on the screen. */
+const ROD_SHARE = 0.22;
+
 export class CanvasView {
   private readonly context: CanvasRenderingContext2D;
   private palette: Palette = LIGHT;
@@ -15,6 +18,7 @@ export class CanvasView {
   private screen = new Float64Array(0);
   private radii = new Float64Array(0);
   private radiiOf: Structure | null = null;
+  private radiiMost = 0;
   private readonly at = new Float64Array(3);
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -54,7 +58,7 @@ export class CanvasView {
 
   draw(picture: Picture, camera: Camera): void {
     this.empty(camera);
-    this.measure(picture.structure);
+    this.measure(picture.structure, camera);
     if (picture.ghost) this.drawGhost(picture, picture.ghost, camera);
     this.place(picture.positions, camera);
     this.drawSprings(picture.structure);
@@ -68,7 +72,16 @@ export class CanvasView {
   }
 
   /** What lies under a screen point: the nearest particle in reach, else the nearest rod. */
-  pick(structure: Structure, x: number, y: number, reach: number): Selection {
+  pick(
+    structure: Structure,
+    positions: Float64Array,
+    camera: Camera,
+    x: number,
+    y: number,
+    reach: number,
+  ): Selection {
+    this.measure(structure, camera);
+    this.place(positions, camera);
     let best: Selection = null;
     let nearest = reach;
     for (let i = 0; i < structure.masses.length; i += 1) {
@@ -94,16 +107,23 @@ export class CanvasView {
     }
   }
 
-  /** Radii grow with the cube root of the mass, as balls of one stuff do; crowded scenes get smaller ones. */
-  private measure(structure: Structure): void {
-    if (this.radiiOf === structure) return;
+  /**
+   * Radii grow with the cube root of the mass, as balls of one stuff do; crowded scenes get smaller ones, and balls
+   * never hide the rods between them.
+   */
+  private measure(structure: Structure, camera: Camera): void {
+    const { masses, rods } = structure;
+    const mean = rods.reduce((sum, { length }) => sum + length, 0) / Math.max(1, rods.length);
+    const most = rods.length > 0 ? Math.max(1.5, ROD_SHARE * mean * camera.scale) : Infinity;
+    if (this.radiiOf === structure && this.radiiMost === most) return;
     this.radiiOf = structure;
-    const count = structure.masses.length;
-    const base = count > 300 ? 2 : count > 60 ? 3.5 : count > 20 ? 4.5 : 6;
-    const sorted = Array.from(structure.masses).sort((a, b) => a - b);
+    this.radiiMost = most;
+    const count = masses.length;
+    const base = Math.min(most, count > 300 ? 2 : count > 60 ? 3.5 : count > 20 ? 4.5 : 6);
+    const sorted = Array.from(masses).sort((a, b) => a - b);
     const usual = sorted[Math.floor(count / 2)] || 1;
-    this.radii = Float64Array.from(structure.masses, (mass) =>
-      Math.min(18, Math.max(2, base * Math.cbrt(mass / usual))),
+    this.radii = Float64Array.from(masses, (mass) =>
+      Math.min(18, Math.max(1.5, base * Math.cbrt(mass / usual))),
     );
   }
 
@@ -115,11 +135,12 @@ export class CanvasView {
     this.place(ghost, camera);
     const { context, screen } = this;
     context.strokeStyle = this.palette.ghost;
-    context.globalAlpha = 0.85;
+    context.globalAlpha = picture.ghostStopped ? 0.3 : 0.85;
     context.lineWidth = 2;
     context.setLineDash([5, 4]);
     context.beginPath();
     for (const { a, b } of picture.structure.rods) this.traceLine(a, b);
+    for (const { a, b } of picture.structure.springs) this.traceLine(a, b);
     context.stroke();
     context.setLineDash([]);
     context.beginPath();

@@ -21,6 +21,8 @@ export interface Picture {
   tensionLimit: number;
   /** positions of the comparison run, or null */
   ghost: Float64Array | null;
+  /** the comparison run came to its end */
+  ghostStopped: boolean;
   selection: Selection;
   hover: Selection;
   mouse: { particle: number; target: number[] } | null;

@@ -10,12 +10,17 @@ import type { Arrow, Picture, Selection } from './picture';
 /** Above this a step is shown as the jump it is; below, the drawing slides from one state to the next. */
 const LONGEST_SMOOTHED_STEP = 1 / 30;
 
+/** A peak of tension is half forgotten after 140 frames, about two seconds. */
+const FADE = 0.995;
+
 export class Stage {
   camera = new Camera(2);
   readonly view: CanvasView;
   hover: Selection = null;
   /** ends of the colour scale, N */
   tensionLimit = 1;
+  /** the largest tension of late, N */
+  private loudest = 0;
   onTensionLimit: (limit: number) => void = () => {};
   private box: Box | null = null;
   private request = 0;
@@ -52,7 +57,7 @@ export class Stage {
     this.camera.inset = inset;
     this.box = boxOfMotion(run.simulation, structure);
     this.hover = null;
-    this.tensionLimit = 0;
+    this.loudest = 0;
     this.view.resize(this.camera);
     this.fit();
   }
@@ -86,7 +91,10 @@ export class Stage {
   }
 
   pick(x: number, y: number, reach: number): Selection {
-    return this.session.structure ? this.view.pick(this.session.structure, x, y, reach) : null;
+    const { run, structure } = this.session;
+    return run && structure
+      ? this.view.pick(structure, run.simulation.positions(), this.camera, x, y, reach)
+      : null;
   }
 
   positionOf(particle: number): number[] {
@@ -109,6 +117,7 @@ export class Stage {
       tension,
       tensionLimit: this.tensionLimit,
       ghost: ghost ? this.smoothed(ghost.simulation) : null,
+      ghostStopped: this.session.ghostStopped !== null,
       selection: this.session.selection,
       hover: this.hover,
       mouse: this.session.mouse,
@@ -139,12 +148,14 @@ export class Stage {
 
   /** The scale grows at once and shrinks slowly, in round numbers, so that colours keep their meaning while one looks. */
   private followTension(tension: Float64Array): void {
-    let largest = 0;
-    for (const value of tension) if (Number.isFinite(value)) largest = Math.max(largest, Math.abs(value));
-    const wanted = niceCeiling(largest);
-    const before = this.tensionLimit;
-    if (wanted > before || largest < 0.15 * before) this.tensionLimit = largest > 0 ? wanted : before || 1;
-    if (this.tensionLimit !== before) this.onTensionLimit(this.tensionLimit);
+    if (this.session.running) this.loudest *= FADE;
+    for (const value of tension) {
+      if (Number.isFinite(value)) this.loudest = Math.max(this.loudest, Math.abs(value));
+    }
+    const limit = niceCeiling(this.loudest);
+    if (limit === this.tensionLimit) return;
+    this.tensionLimit = limit;
+    this.onTensionLimit(limit);
   }
 
   private arrows(): Arrow[] {

@@ -1,7 +1,13 @@
 // One Chromium for a test file, and pages in it that remember what they complained about and whom they asked.
 
-import { type Browser, type BrowserContextOptions, chromium, type Page } from 'playwright-core';
-import { afterAll, beforeAll } from 'vitest';
+import {
+  type Browser,
+  type BrowserContext,
+  type BrowserContextOptions,
+  chromium,
+  type Page,
+} from 'playwright-core';
+import { afterAll, afterEach, beforeAll } from 'vitest';
 import { type Served, serve } from './serve';
 
 export interface Opened {
@@ -22,6 +28,7 @@ export interface Lab {
 /** Sets up the browser for a file's tests; QHAT_CHROMIUM names another one than Debian's. */
 export function laboratory(): Lab {
   let browser: Browser;
+  const contexts: BrowserContext[] = [];
   const lab = {} as Lab;
   beforeAll(async () => {
     lab.served = await serve();
@@ -34,8 +41,13 @@ export function laboratory(): Lab {
     await browser?.close();
     lab.served?.close();
   });
+  // pages left open would go on running beside the next test
+  afterEach(async () => {
+    for (const context of contexts.splice(0)) await context.close();
+  });
   lab.open = async (path = '/', options = {}) => {
     const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+    contexts.push(context);
     const page = await context.newPage();
     const opened: Opened = { page, errors: [], strangers: [], later: [] };
     let ready = false;
