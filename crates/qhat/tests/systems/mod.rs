@@ -1,5 +1,9 @@
 //! Systems that several tests share, built through the public door.
 #![allow(dead_code, reason = "each test file uses some of them")]
+#![allow(unreachable_pub, reason = "a module of several test crates, each of which is its whole world")]
+
+pub mod dense;
+pub mod random;
 
 use qhat::{Dimension, Distance, Feedback, Gravity, Integrator, Nail, Particle, ParticleId, Settings, State, System};
 

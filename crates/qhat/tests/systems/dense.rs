@@ -1,0 +1,80 @@
+//! Textbook dense algebra on flat row-major arrays: slow, short, and written apart from the engine.
+
+/// y = A x; A has `x.len()` columns.
+pub fn multiply(a: &[f64], x: &[f64]) -> Vec<f64> {
+    a.chunks_exact(x.len()).map(|row| dot(row, x)).collect()
+}
+
+/// y = Aᵀ x; A has `columns` columns and `x.len()` rows.
+pub fn multiply_transposed(a: &[f64], columns: usize, x: &[f64]) -> Vec<f64> {
+    (0..columns).map(|j| x.iter().enumerate().map(|(i, x)| a[i * columns + j] * x).sum()).collect()
+}
+
+/// J W Jᵀ for W given as one number a coordinate.
+pub fn sandwich(j: &[f64], w: &[f64]) -> Vec<f64> {
+    let rows: Vec<&[f64]> = j.chunks_exact(w.len()).collect();
+    let entry = |a: &[f64], b: &[f64]| (0..w.len()).map(|k| a[k] * w[k] * b[k]).sum();
+    rows.iter().flat_map(|a| rows.iter().map(move |b| entry(a, b))).collect()
+}
+
+/// Gaussian elimination with partial pivoting; `None` where a pivot is zero.
+pub fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
+    let n = b.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()))?;
+        if a[pivot * n + k] == 0.0 {
+            return None;
+        }
+        for j in 0..n {
+            a.swap(k * n + j, pivot * n + j);
+        }
+        b.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = a[i * n + k] / a[k * n + k];
+            for j in k..n {
+                a[i * n + j] -= factor * a[k * n + j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k * n + j] * b[j]).sum();
+        b[k] = (b[k] - known) / a[k * n + k];
+    }
+    Some(b)
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+pub fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// max |a_i|.
+pub fn largest(a: &[f64]) -> f64 {
+    a.iter().fold(0.0, |most, x| if x.is_nan() { f64::NAN } else { most.max(x.abs()) })
+}
+
+/// max |a_i − b_i|.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    largest(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
+}
+
+/// Fails with both numbers unless they agree to `tolerance`; NaN never agrees.
+#[track_caller]
+pub fn assert_close(what: &str, actual: f64, expected: f64, tolerance: f64) {
+    let error = (actual - expected).abs();
+    assert!(error <= tolerance, "{what}: {actual:e} instead of {expected:e}, off by {error:e}, allowed {tolerance:e}");
+}
+
+/// The same for arrays, by their largest difference.
+#[track_caller]
+pub fn assert_all_close(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(actual.len(), expected.len(), "{what}: lengths");
+    for (i, (a, e)) in actual.iter().zip(expected).enumerate() {
+        assert_close(&format!("{what}[{i}]"), *a, *e, tolerance);
+    }
+}
