@@ -33,8 +33,13 @@ export function fixed(value: number, decimals: number): string {
   return Number.isFinite(value) ? minus(value.toFixed(decimals)) : '–';
 }
 
+/** Below this, in m, m/s or N, and below this part of its largest component, a component of a vector is rounding. */
+const ROUNDING = 1e-12;
+
 export function vector(values: ArrayLike<number>, digits = 3): string {
-  return `(${Array.from(values, (value) => format(value, digits)).join(', ')})`;
+  const components = Array.from(values);
+  const noise = ROUNDING * Math.max(1, ...components.map(Math.abs));
+  return `(${components.map((value) => format(Math.abs(value) < noise ? 0 : value, digits)).join(', ')})`;
 }
 
 function minus(text: string): string {

@@ -9,8 +9,8 @@ export interface Box {
 
 const SMALLEST_SCALE = 1e-6;
 const LARGEST_SCALE = 1e9;
-/** Room left around a fitted scene, of the free part of the canvas. */
-const FIT = 0.8;
+/** The part of the free canvas that a fitted scene fills; a box in space is larger on the screen than what is in it. */
+const FIT = { 2: 0.8, 3: 1 };
 
 export class Camera {
   /** the point of the scene in the middle of the free canvas, m */
@@ -120,7 +120,7 @@ export class Camera {
     }
     const scale = Math.min(
       ...[0, 1].map(
-        (k) => (FIT * Math.max(40, room[k])) / Math.max(extent[k], 1e-9 * (extent[0] + extent[1]), 1e-12),
+        (k) => (FIT[d] * Math.max(40, room[k])) / Math.max(extent[k], 1e-9 * (extent[0] + extent[1]), 1e-12),
       ),
     );
     // one lone particle has no extent: then a metre is a fifth of the canvas

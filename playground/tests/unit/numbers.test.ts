@@ -21,7 +21,12 @@ describe('numbers for people', () => {
     expect(fixed(Number.NaN, 2)).toBe('–');
   });
 
-  it('writes vectors', () => expect(vector([1, -2.5])).toBe('(1, −2.5)'));
+  it('writes vectors without their rounding', () => {
+    expect(vector([1, -2.5])).toBe('(1, −2.5)');
+    expect(vector([-5.6e-19, -0.491])).toBe('(0, −0.491)');
+    expect(vector([1e-5, 1e8])).toBe('(0, 1.0·10⁸)');
+    expect(vector([2e-9, 1e-7])).toBe('(2.0·10⁻⁹, 1.0·10⁻⁷)');
+  });
 
   it.each([
     [0.7, 1],
