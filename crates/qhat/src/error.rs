@@ -89,7 +89,7 @@ pub enum StepError {
         relative: f64,
     },
     /// No positions that satisfy the constraints were found nearby.
-    #[error("at t = {time} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}")]
+    #[error("at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}", shown(*time))]
     NotSatisfied {
         /// t of the last good state [s].
         time: f64,
@@ -99,7 +99,7 @@ pub enum StepError {
         residual: f64,
     },
     /// The frame would need more substeps than allowed.
-    #[error("at t = {time} s the frame needs more than {max_substeps} substeps")]
+    #[error("at t = {} s the frame needs more than {max_substeps} substeps", shown(*time))]
     TooManySubsteps {
         /// t of the last good state [s].
         time: f64,
@@ -109,4 +109,9 @@ pub enum StepError {
     /// A setting was refused.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+}
+
+/// A time as a person reads it: to the nanosecond, without the roundoff of the sums it came from.
+fn shown(time: f64) -> f64 {
+    (time * 1e9).round() / 1e9
 }
