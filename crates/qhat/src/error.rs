@@ -68,8 +68,7 @@ pub enum SettingsError {
 pub enum StepError {
     /// A coordinate or velocity became infinite or undefined.
     #[error(
-        "at t = {time} s the motion of `{particle}` is no longer a finite number: the step h is too large for this system"
-    )]
+        "at t = {} s the motion of `{particle}` is no longer a finite number: the step h is too large for this system", shown(*time))]
     NotFinite {
         /// t of the last good state [s].
         time: f64,
@@ -78,8 +77,7 @@ pub enum StepError {
     },
     /// A constraint is violated beyond recognition.
     #[error(
-        "at t = {time} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too large, or the constraints cannot all hold"
-    )]
+        "at t = {} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too large, or the constraints cannot all hold", shown(*time))]
     Diverged {
         /// t of the last good state [s].
         time: f64,
