@@ -1,0 +1,140 @@
+//! `[[constraints]]`, `[[springs]]` and `[[loads]]`: what refers to particles.
+
+use super::Assembly;
+use crate::model::{Constraint, Distance, Id, Load, Nail, Name, PointLoad, Spring};
+use crate::tree::Node;
+use qhat::{ParticleId, PointForce};
+
+impl Assembly<'_, '_, '_> {
+    /// Takes the names that the file gives, before any that are made from ids.
+    pub(super) fn take_constraint_names(&mut self, constraints: &[Constraint]) {
+        for (index, constraint) in constraints.iter().enumerate() {
+            let (Constraint::Distance(Distance { id, .. }) | Constraint::Nail(Nail { id, .. })) = constraint;
+            if let Some(Name(name)) = id
+                && !self.constraint_names.insert(name.clone())
+            {
+                let span = self.tree.key("constraints").item(index).key("id").span.clone();
+                let message = format!("the id {} is given to two constraints", self.report.quoted(name));
+                self.report.error(span, message, Some("each constraint needs an id of its own".into()));
+            }
+        }
+    }
+
+    /// The name, with a number behind it where it is taken: two rods between the same particles are allowed.
+    pub(super) fn free_constraint_name(&mut self, wanted: String) -> String {
+        let mut name = wanted.clone();
+        let mut number = 2;
+        while !self.constraint_names.insert(name.clone()) {
+            name = format!("{wanted}({number})");
+            number += 1;
+        }
+        name
+    }
+
+    pub(super) fn add_constraints(&mut self, constraints: &[Constraint]) {
+        for (index, constraint) in constraints.iter().enumerate() {
+            let place = self.tree.key("constraints").item(index);
+            match constraint {
+                Constraint::Distance(distance) => self.add_distance(distance, place),
+                Constraint::Nail(nail) => self.add_nail(nail, place),
+            };
+        }
+    }
+
+    fn add_distance(&mut self, distance: &Distance, place: &Node) -> Option<()> {
+        let (a, b) = self.pair(&distance.between, place)?;
+        let length = match distance.length {
+            Some(length) => length,
+            None => {
+                let length = self.distance(a.0, b.0);
+                let [one, other] = distance.between.each_ref().map(|Id(id)| self.report.quoted(id));
+                let complaint = if length == 0.0 {
+                    format!("a rod needs a length, but {one} and {other} start at the same place")
+                } else if !length.is_finite() {
+                    format!("{one} and {other} start too far apart to measure the length of a rod")
+                } else {
+                    String::new()
+                };
+                if !complaint.is_empty() {
+                    let help = "move one of them, or give `length` [m]".to_owned();
+                    self.report.error(place.key("between").span.clone(), complaint, Some(help));
+                    return None;
+                }
+                length
+            }
+        };
+        let [Id(one), Id(other)] = &distance.between;
+        let name = match &distance.id {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name(format!("{one}-{other}")),
+        };
+        self.builder.constraint(name, qhat::Distance { a, b, length, form: distance.form.into() });
+        Some(())
+    }
+
+    fn add_nail(&mut self, nail: &Nail, place: &Node) -> Option<()> {
+        let particle = self.particle(&nail.particle, place.key("particle"))?;
+        let at = match &nail.at {
+            Some(at) => at.padded(),
+            None => {
+                let start = &self.positions[particle.0 * self.dimension..][..self.dimension];
+                std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
+            }
+        };
+        let name = match &nail.id {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name(format!("nail({})", nail.particle.0)),
+        };
+        self.builder.constraint(name, qhat::Nail { particle, at, form: nail.form.into() });
+        Some(())
+    }
+
+    pub(super) fn add_springs(&mut self, springs: &[Spring]) {
+        for (index, spring) in springs.iter().enumerate() {
+            let place = self.tree.key("springs").item(index);
+            let Some((a, b)) = self.pair(&spring.between, place) else { continue };
+            let rest = spring.rest.unwrap_or_else(|| self.distance(a.0, b.0));
+            if !rest.is_finite() {
+                let message = "its ends start too far apart to measure its rest length";
+                self.report.error(place.key("between").span.clone(), message, Some("give `rest` [m]".into()));
+                continue;
+            }
+            let Spring { stiffness, damping, .. } = *spring;
+            self.builder.force(qhat::Spring { a, b, stiffness, damping, rest });
+        }
+    }
+
+    pub(super) fn add_loads(&mut self, loads: &[Load]) {
+        for (index, load) in loads.iter().enumerate() {
+            let place = self.tree.key("loads").item(index);
+            let Load::Point(PointLoad { particle, force }) = load;
+            if let Some(particle) = self.particle(particle, place.key("particle")) {
+                self.builder.force(PointForce { particle, force: force.padded() });
+            }
+        }
+    }
+
+    /// Two different particles.
+    fn pair(&mut self, between: &[Id; 2], place: &Node) -> Option<(ParticleId, ParticleId)> {
+        let place = place.key("between");
+        let [one, other] = between;
+        let (a, b) = (self.particle(one, place.item(0)), self.particle(other, place.item(1)));
+        let pair = (a?, b?);
+        if pair.0 == pair.1 {
+            let message = format!("{} cannot be connected to itself", self.report.quoted(&one.0));
+            self.report.error(place.span.clone(), message, Some("name two different particles".into()));
+            return None;
+        }
+        Some(pair)
+    }
+
+    /// The particle with this id.
+    pub(super) fn particle(&mut self, Id(id): &Id, place: &Node) -> Option<ParticleId> {
+        let found = self.ids.find(id);
+        if found.is_none() && !self.report.is_full() {
+            let message = format!("there is no particle {}", self.report.quoted(id));
+            self.report.error(place.span.clone(), message, Some(self.ids.help(id)));
+        }
+        found
+    }
+}

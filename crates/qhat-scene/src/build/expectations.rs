@@ -1,0 +1,45 @@
+//! `[expect]`: what it names must exist.
+
+use super::Assembly;
+use crate::model::{Axis, Expect, Id};
+use crate::suggest::nearest;
+use crate::tree::Node;
+
+impl Assembly<'_, '_, '_> {
+    pub(super) fn check_expectations(&mut self, expect: &Expect) {
+        let place = self.tree.key("expect");
+        if let Some(period) = &expect.period {
+            self.check_watched(&period.particle, period.axis, place.key("period"));
+        }
+        for (index, motion) in expect.motion.iter().enumerate() {
+            let place = place.key("motion").item(index);
+            self.check_watched(&motion.particle, motion.axis, place);
+            for (key, range) in [("within", motion.within), ("covers", motion.covers)] {
+                if range.is_some_and(|[low, high]| low > high) {
+                    let message = format!("`{key}` must begin with the lower end");
+                    self.report.error(place.key(key).span.clone(), message, Some("exchange the two numbers".into()));
+                }
+            }
+        }
+        for (index, tension) in expect.tension.iter().enumerate() {
+            if !self.constraint_names.contains(&tension.rod) {
+                let message = format!("there is no rod {}", self.report.quoted(&tension.rod));
+                let mut names: Vec<&str> = self.constraint_names.iter().map(String::as_str).collect();
+                names.sort_unstable();
+                let help = match nearest(&tension.rod, names.into_iter()) {
+                    Some(name) => format!("did you mean `{name}`?"),
+                    None => "a rod without `id` is named after its ends, as in `a-b`".to_owned(),
+                };
+                self.report.error(place.key("tension").item(index).key("rod").span.clone(), message, Some(help));
+            }
+        }
+    }
+
+    fn check_watched(&mut self, particle: &str, axis: Axis, place: &Node) {
+        self.particle(&Id(particle.to_owned()), place.key("particle"));
+        if axis.index() >= self.dimension {
+            let message = "there is no axis `z` in two dimensions";
+            self.report.error(place.key("axis").span.clone(), message, Some("use `x` or `y`".into()));
+        }
+    }
+}

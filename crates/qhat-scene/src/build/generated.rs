@@ -1,0 +1,106 @@
+//! `[[generate]]`: particles and what connects them, after those that the file spells out.
+
+use super::{Assembly, MOST_PARTICLES};
+use crate::model::Generate;
+use crate::model::generate::{Common, Link, Plan, RodLink, SpringLink};
+use qhat::{Distance, Particle, ParticleId, Spring};
+use std::ops::Range;
+
+/// What is still to be connected in one block.
+pub(super) struct Unlinked<'a> {
+    link: &'a Link,
+    place: Range<usize>,
+    /// The number of its first particle.
+    first: usize,
+    names: Vec<String>,
+    pairs: Vec<(usize, usize)>,
+}
+
+impl Assembly<'_, '_, '_> {
+    /// Adds the particles of all blocks; `None` when they ask for too much or for what cannot be, so that references to
+    /// them would mislead.
+    pub(super) fn add_generated<'g>(&mut self, blocks: &'g [Generate]) -> Option<Vec<Unlinked<'g>>> {
+        let mut total = self.positions.len() as u64 / self.dimension as u64;
+        let mut unlinked = Vec::new();
+        for (index, block) in blocks.iter().enumerate() {
+            let place = self.tree.key("generate").item(index);
+            total = total.saturating_add(block.count());
+            if total > MOST_PARTICLES {
+                let message =
+                    format!("with this block the scene has {total} particles; at most {MOST_PARTICLES} are allowed");
+                self.report.error(place.span.clone(), message, Some("ask for fewer particles".into()));
+                return None;
+            }
+            unlinked.extend(self.add_block(block, place.span.clone()));
+        }
+        (unlinked.len() == blocks.len()).then_some(unlinked)
+    }
+
+    fn add_block<'g>(&mut self, block: &'g Generate, place: Range<usize>) -> Option<Unlinked<'g>> {
+        let Plan { particles, links } = block.plan();
+        let Common { mass, velocity, fixed, link } = block.common();
+        if fixed && velocity.is_some_and(|v| v.0.iter().any(|&v| v != 0.0)) {
+            let help = "leave out `velocity`, or `fixed`".to_owned();
+            self.report.error(place, "fixed particles cannot have a velocity", Some(help));
+            return None;
+        }
+        let first = self.positions.len() / self.dimension;
+        let mut names = Vec::with_capacity(particles.len());
+        for (name, at) in particles {
+            if !at.iter().all(|x| x.is_finite()) {
+                let message =
+                    format!("the place of particle {} of this block is not a finite number", self.report.quoted(&name));
+                self.report.error(place, message, Some("use smaller numbers".into()));
+                return None;
+            }
+            self.positions.extend(&at);
+            let velocity = velocity.map_or_else(|| vec![0.0; self.dimension], |velocity| velocity.0.clone());
+            let added = self.builder.particle(Particle { name: name.clone(), position: at, velocity, mass, fixed });
+            if let Err(origin) = self.ids.take(&name, added, place.clone()) {
+                let message =
+                    format!("this block makes a particle {}, but that id is taken", self.report.quoted(&name));
+                let line = self.report.line_of(origin.start);
+                let help = format!("the first is in line {line}; use another `prefix`");
+                self.report.error(place, message, Some(help));
+                return None;
+            }
+            names.push(name);
+        }
+        Some(Unlinked { link, place, first, names, pairs: links })
+    }
+
+    /// Connects the particles of all blocks.
+    pub(super) fn add_links(&mut self, unlinked: &[Unlinked<'_>]) {
+        for Unlinked { link, place, first, names, pairs } in unlinked {
+            for &(a, b) in pairs {
+                let [a, b] = [a, b].map(|k| (first + k, names[k].as_str()));
+                if self.add_link(link, a, b, place).is_none() {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn add_link(&mut self, link: &Link, a: (usize, &str), b: (usize, &str), place: &Range<usize>) -> Option<()> {
+        let length = self.distance(a.0, b.0);
+        let (first, second) = (ParticleId(a.0), ParticleId(b.0));
+        match link {
+            Link::Rod(_) if !(length.is_finite() && length > 0.0) => {
+                let [a, b] = [a.1, b.1].map(|name| self.report.quoted(name));
+                let message = format!("{a} and {b} of this block start {length} m apart, where no rod can be");
+                self.report.error(place.clone(), message, Some("give its particles different places".into()));
+                return None;
+            }
+            Link::Rod(RodLink { form }) => {
+                let name = self.free_constraint_name(format!("{}-{}", a.1, b.1));
+                self.builder.constraint(name, Distance { a: first, b: second, length, form: (*form).into() });
+            }
+            Link::Spring(SpringLink { stiffness, damping }) => {
+                let (stiffness, damping) = (*stiffness, *damping);
+                self.builder.force(Spring { a: first, b: second, stiffness, damping, rest: length });
+            }
+            Link::None(_) => {}
+        }
+        Some(())
+    }
+}

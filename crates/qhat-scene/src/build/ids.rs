@@ -1,0 +1,65 @@
+//! The ids of the particles: which there are, where each was given, and which was meant.
+
+use crate::suggest::nearest;
+use qhat::ParticleId;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// The ids of the particles in the order of the alphabet, so that suggestions do not depend on chance.
+#[derive(Default)]
+pub(super) struct Ids {
+    known: BTreeMap<String, (ParticleId, Range<usize>)>,
+}
+
+impl Ids {
+    /// Takes an id; where it is taken already, says where.
+    pub(super) fn take(&mut self, id: &str, particle: ParticleId, origin: Range<usize>) -> Result<(), Range<usize>> {
+        if let Some((_, first)) = self.known.get(id) {
+            return Err(first.clone());
+        }
+        self.known.insert(id.to_owned(), (particle, origin));
+        Ok(())
+    }
+
+    pub(super) fn find(&self, id: &str) -> Option<ParticleId> {
+        self.known.get(id).map(|(particle, _)| *particle)
+    }
+
+    /// Where an id was given in the text.
+    pub(super) fn origin(&self, id: &str) -> Option<Range<usize>> {
+        self.known.get(id).map(|(_, origin)| origin.clone())
+    }
+
+    /// What to write instead of an id that does not exist.
+    pub(super) fn help(&self, id: &str) -> String {
+        if let Some((first, last)) = self.numbered_like(id) {
+            return format!("they go from `{first}` to `{last}`");
+        }
+        // Those that share the beginning come first: among a thousand of a chain they are the likely ones.
+        let beginning: String = id.chars().take(1).collect();
+        let alike = self.known.range(beginning.clone()..).take_while(|(known, _)| known.starts_with(&beginning));
+        let names = alike.map(|(known, _)| known).chain(self.known.keys()).map(String::as_str);
+        if let Some(name) = nearest(id, names) {
+            return format!("did you mean `{name}`?");
+        }
+        const SHOWN: usize = 8;
+        let shown: Vec<String> = self.known.keys().take(SHOWN).map(|known| format!("`{known}`")).collect();
+        let rest = if self.known.len() > SHOWN { ", …" } else { "" };
+        format!("the particles are {}{rest}", shown.join(", "))
+    }
+
+    /// The first and last of several ids that differ from this one only in their number.
+    fn numbered_like(&self, id: &str) -> Option<(String, String)> {
+        let stem = id.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        if stem.len() == id.len() {
+            return None;
+        }
+        let alike = self.known.range(stem.to_owned()..).map_while(|(known, _)| known.strip_prefix(stem));
+        let mut numbers: Vec<u64> = alike.filter_map(|rest| rest.parse().ok()).collect();
+        numbers.sort_unstable();
+        match numbers.as_slice() {
+            [first, .., last] => Some((format!("{stem}{first}"), format!("{stem}{last}"))),
+            _ => None,
+        }
+    }
+}

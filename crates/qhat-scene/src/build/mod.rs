@@ -1,0 +1,116 @@
+//! From the model to the engine's System and State: ids resolved, defaults filled in, and all that one key says about
+//! another checked.
+
+mod connections;
+mod expectations;
+mod generated;
+mod ids;
+mod particles;
+
+use crate::model::Document;
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::tree::Node;
+use ids::Ids;
+use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
+use std::collections::HashSet;
+
+/// More would fill the memory of a browser before anyone has seen a frame.
+const MOST_PARTICLES: u64 = 1_000_000;
+
+/// A scene while it is put together.
+struct Assembly<'a, 'r, 't> {
+    tree: &'a Node,
+    report: &'r mut Report<'t>,
+    builder: SystemBuilder,
+    dimension: usize,
+    /// x [m], flat, for lengths that are left out.
+    positions: Vec<f64>,
+    ids: Ids,
+    constraint_names: HashSet<String>,
+}
+
+/// The scene, or `None` after telling what is wrong with it.
+pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) -> Option<Scene> {
+    let (number, dimension) = if document.dimension == 2 { (2, Dimension::Two) } else { (3, Dimension::Three) };
+    let mut assembly = Assembly {
+        tree,
+        report,
+        builder: System::builder(dimension),
+        dimension: number,
+        positions: Vec::new(),
+        ids: Ids::default(),
+        constraint_names: HashSet::new(),
+    };
+    assembly.add_all(&document)?;
+    let Assembly { builder, report, ids, .. } = assembly;
+    let (system, state) = match builder.build() {
+        Ok(built) => built,
+        Err(error) => {
+            report.error(place_of(&error, tree, &ids), error.to_string(), None);
+            return None;
+        }
+    };
+    let step = &document.step;
+    let settings = Settings {
+        h: step.h,
+        integrator: step.integrator.0,
+        tolerance: step.tolerance,
+        constraint_tolerance: step.constraint_tolerance,
+        ..Settings::default()
+    };
+    if let Err(error) = settings.check() {
+        report.error(tree.key("step").span.clone(), error.to_string(), None);
+        return None;
+    }
+    let Document { name, description, expect, .. } = document;
+    Some(Scene { name, description, system, state, settings, duration: step.duration, expect })
+}
+
+impl Assembly<'_, '_, '_> {
+    /// Adds everything; `None` when something is wrong with it.
+    fn add_all(&mut self, document: &Document) -> Option<()> {
+        let clean = self.report.is_empty();
+        self.take_constraint_names(&document.constraints);
+        self.add_particles(&document.particles);
+        let unlinked = self.add_generated(&document.generate)?;
+        if document.particles.is_empty() && document.generate.is_empty() {
+            let help = "add `[[particles]]` with an `id` and `at`, or `[[generate]]`".to_owned();
+            self.report.error(0..0, "the scene has no particles", Some(help));
+            return None;
+        }
+        self.add_constraints(&document.constraints);
+        self.add_links(&unlinked);
+        self.add_springs(&document.springs);
+        self.add_loads(&document.loads);
+        if let Some(gravity) = &document.forces.gravity {
+            self.builder.force(Gravity { acceleration: gravity.padded() });
+        }
+        if document.forces.drag > 0.0 {
+            self.builder.force(Drag { coefficient: document.forces.drag });
+        }
+        let crate::model::Feedback { ks, kd, diagonal_drag, elasticity } = document.feedback;
+        self.builder.feedback(Feedback { ks, kd, diagonal_drag, elasticity });
+        if let Some(expect) = &document.expect {
+            self.check_expectations(expect);
+        }
+        (clean && self.report.is_empty()).then_some(())
+    }
+
+    /// The distance at the start [m].
+    fn distance(&self, a: usize, b: usize) -> f64 {
+        let d = self.dimension;
+        let squares = (0..d).map(|k| self.positions[a * d + k] - self.positions[b * d + k]).map(|x| x * x);
+        squares.sum::<f64>().sqrt()
+    }
+}
+
+/// Where to point for what only the engine noticed.
+fn place_of(error: &BuildError, tree: &Node, ids: &Ids) -> std::ops::Range<usize> {
+    match error {
+        BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
+        BuildError::Constraint { .. } => tree.key("constraints").span.clone(),
+        BuildError::Force { .. } => tree.key("forces").span.clone(),
+        BuildError::Settings(_) => tree.key("feedback").span.clone(),
+    }
+}

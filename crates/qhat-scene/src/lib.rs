@@ -1,0 +1,58 @@
+//! Scene files of [`qhat`]: TOML for people, JSON for programs, one model for both.
+//!
+//! [`load`] turns a text into a [`Scene`] that can be simulated, or into [`SceneErrors`] that say in which line and column
+//! of the text something is wrong and what to write instead. No files are read here and none can be named by a scene.
+//!
+//! ```
+//! let text = r#"
+//! schema = "qhat/1"
+//! name = "Pendulum"
+//! dimension = 2
+//!
+//! [forces]
+//! gravity = [0.0, -9.81]
+//!
+//! [[particles]]
+//! id = "pivot"
+//! at = [0.0, 0.0]
+//! fixed = true
+//!
+//! [[particles]]
+//! id = "bob"
+//! at = [1.0, 0.0]
+//!
+//! [[constraints]]
+//! kind = "distance"
+//! between = ["pivot", "bob"]
+//! "#;
+//! let mut simulation = qhat_scene::load(text, "pendulum.toml", qhat_scene::Format::Toml)?.simulation()?;
+//! simulation.step()?;
+//!
+//! let error = qhat_scene::load(&text.replace("at =", "ta ="), "pendulum.toml", qhat_scene::Format::Toml).unwrap_err();
+//! assert_eq!(error.errors[1].message, "unknown key `ta` in this entry of `particles`");
+//! assert_eq!((error.errors[1].line, error.errors[1].column), (11, 1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Data flows one way: text → `tree` (values with their bytes) → `check` (against the schema) → `model` (the file as Rust
+//! types) → `build` (the engine's `System` and `State`). The types of `model` are the one list of keys: [`json_schema`] is
+//! made from them and `check` follows it.
+
+mod build;
+mod check;
+mod error;
+mod load;
+mod model;
+mod report;
+mod scene;
+mod schema;
+mod shipped;
+mod suggest;
+mod tree;
+
+pub use error::{SceneError, SceneErrors};
+pub use load::{Format, load, load_bytes};
+pub use model::{Axis, Expect, Motion, Period, Tension};
+pub use scene::Scene;
+pub use schema::json_schema;
+pub use shipped::{Shipped, shipped};

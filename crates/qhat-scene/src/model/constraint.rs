@@ -1,0 +1,125 @@
+//! `[[constraints]]`, `[[springs]]` and `[[loads]]`.
+
+use super::{Id, Name, Vector};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What holds exactly.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[schemars(extend("x-planned" = ["expression"]))]
+pub(crate) enum Constraint {
+    Distance(Distance),
+    Nail(Nail),
+}
+
+/// A rod: two particles stay as far apart as they are.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Distance {
+    /// Its name in reports; the ids of its ends with a `-` between them if left out.
+    #[serde(default)]
+    pub(crate) id: Option<Name>,
+    /// The ids of the two particles at its ends.
+    pub(crate) between: [Id; 2],
+    /// Its length [m], above 0; the distance at the start if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) length: Option<f64>,
+    /// The function that is held at zero: the length's error, or that of its square (the classic one).
+    #[serde(default)]
+    pub(crate) form: DistanceForm,
+}
+
+/// The function of a distance that is held at zero.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum DistanceForm {
+    /// |d| − r.
+    #[default]
+    Length,
+    /// d·d − r².
+    Squared,
+}
+
+impl From<DistanceForm> for qhat::DistanceForm {
+    fn from(form: DistanceForm) -> Self {
+        match form {
+            DistanceForm::Length => qhat::DistanceForm::Length,
+            DistanceForm::Squared => qhat::DistanceForm::Squared,
+        }
+    }
+}
+
+/// A nail: one particle stays at a point.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Nail {
+    /// Its name in reports; `nail(particle)` if left out.
+    #[serde(default)]
+    pub(crate) id: Option<Name>,
+    /// The id of the particle it holds.
+    pub(crate) particle: Id,
+    /// The point where it is [m]; where the particle starts if left out.
+    #[serde(default)]
+    pub(crate) at: Option<Vector>,
+    /// The function that is held at zero: the offset itself, or its square (the classic one).
+    #[serde(default)]
+    pub(crate) form: NailForm,
+}
+
+/// The function of the offset x − p that is held at zero.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum NailForm {
+    /// x − p, one row for each dimension.
+    #[default]
+    Vector,
+    /// |x − p|², one row whose gradient vanishes where it holds.
+    Scalar,
+}
+
+impl From<NailForm> for qhat::NailForm {
+    fn from(form: NailForm) -> Self {
+        match form {
+            NailForm::Vector => qhat::NailForm::Vector,
+            NailForm::Scalar => qhat::NailForm::Scalar,
+        }
+    }
+}
+
+/// A damped spring between two particles.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Spring {
+    /// The ids of the two particles at its ends.
+    pub(crate) between: [Id; 2],
+    /// Its stiffness [N/m], 0 or more.
+    #[schemars(range(min = 0.0))]
+    pub(crate) stiffness: f64,
+    /// Its damping [N·s/m], 0 or more.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub(crate) damping: f64,
+    /// The length at which it does not pull [m], 0 or more; the distance at the start if left out.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub(crate) rest: Option<f64>,
+}
+
+/// A force on single particles.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub(crate) enum Load {
+    Point(PointLoad),
+}
+
+/// A constant force on one particle.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PointLoad {
+    /// The id of the particle it acts on.
+    pub(crate) particle: Id,
+    /// The force [N].
+    pub(crate) force: Vector,
+}

@@ -1,0 +1,55 @@
+//! The JSON Schema of a scene, made from the types of the model.
+
+use crate::model::Document;
+use schemars::generate::SchemaSettings;
+use schemars::transform::{Transform, transform_subschemas};
+use schemars::{Schema, SchemaGenerator};
+use serde_json::Value;
+use std::sync::LazyLock;
+
+/// The JSON Schema of a scene file, draft 2020-12.
+///
+/// The reader follows this very schema. Keywords of its own: `x-planned` lists names that are taken for later,
+/// `x-length` says that a list has one number for each dimension. What one key says about another (an id that must
+/// exist, a fixed particle that must not move) no schema says.
+pub fn json_schema() -> Value {
+    schema().clone()
+}
+
+pub(crate) fn schema() -> &'static Value {
+    static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+        let settings = SchemaSettings::draft2020_12().with_transform(NoNull);
+        SchemaGenerator::new(settings).into_root_schema_for::<Document>().to_value()
+    });
+    &SCHEMA
+}
+
+/// A key that may be left out is left out: TOML has no null, and one way to say it is enough.
+#[derive(Clone, Debug)]
+struct NoNull;
+
+impl Transform for NoNull {
+    fn transform(&mut self, schema: &mut Schema) {
+        if let Some(Value::Array(types)) = schema.get_mut("type") {
+            types.retain(|name| name != "null");
+            if let [only] = types.as_slice() {
+                let only = only.clone();
+                schema.insert("type".into(), only);
+            }
+        }
+        if let Some(Value::Array(choices)) = schema.get_mut("anyOf") {
+            choices.retain(|choice| choice.get("type").is_none_or(|name| name != "null"));
+            if let [Value::Object(only)] = choices.as_mut_slice() {
+                let only = std::mem::take(only);
+                schema.remove("anyOf");
+                for (keyword, value) in only {
+                    schema.ensure_object().entry(keyword).or_insert(value);
+                }
+            }
+        }
+        if schema.get("default") == Some(&Value::Null) {
+            schema.remove("default");
+        }
+        transform_subschemas(self, schema);
+    }
+}

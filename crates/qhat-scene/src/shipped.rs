@@ -1,0 +1,65 @@
+//! The scenes that come with qhat, embedded.
+
+use crate::report::Report;
+use crate::tree::toml;
+use std::sync::LazyLock;
+
+/// A scene that comes with qhat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shipped {
+    /// Its name in commands and addresses: the file's name without `.toml`.
+    pub name: &'static str,
+    /// The title people see.
+    pub title: &'static str,
+    /// The text of its file, TOML.
+    pub text: &'static str,
+}
+
+impl Shipped {
+    fn new(name: &'static str, text: &'static str) -> Self {
+        let tree = toml::parse(text, &mut Report::new(name, text));
+        let written = tree.and_then(|tree| text.get(tree.get("name")?.span.clone()));
+        Shipped { name, title: written.map_or(name, |title| title.trim_matches('"')), text }
+    }
+
+    /// Reads the scene.
+    ///
+    /// # Errors
+    /// None that the tests of this crate have left.
+    pub fn load(&self) -> Result<crate::Scene, crate::SceneErrors> {
+        crate::load(self.text, &format!("{}.toml", self.name), crate::Format::Toml)
+    }
+}
+
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        vec![$(Shipped::new($name, include_str!(concat!("../../../scenes/", $name, ".toml"))),)*]
+    };
+}
+
+/// The scenes that come with qhat, in the order in which a reader meets them. A test holds the list to the folder `scenes`.
+pub fn shipped() -> &'static [Shipped] {
+    static SHIPPED: LazyLock<Vec<Shipped>> = LazyLock::new(|| {
+        scenes![
+            "pendulum",
+            "double-pendulum",
+            "hanging-chain",
+            "heavy-end",
+            "net",
+            "bridge-truss",
+            "girder",
+            "four-bar",
+            "jansen-leg",
+            "strandbeest",
+            "peaucellier",
+            "trebuchet",
+            "cube",
+            "tensegrity",
+            "web",
+            "classic",
+            "chain-100",
+            "chain-1000",
+        ]
+    });
+    &SHIPPED
+}

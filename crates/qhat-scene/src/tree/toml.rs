@@ -1,0 +1,62 @@
+//! TOML text to a tree.
+
+use super::{Entry, Node, Value};
+use crate::report::Report;
+use toml::de::{DeTable, DeValue};
+
+/// The tree of a TOML text, or `None` after telling what is wrong with it.
+pub(crate) fn parse(text: &str, report: &mut Report<'_>) -> Option<Node> {
+    let (table, errors) = DeTable::parse_recoverable(text);
+    let mut told = 0;
+    for error in &errors {
+        let span = error.span().unwrap_or(0..0);
+        let line = report.line_of(span.start);
+        // The parser goes on after an error; what it says next about the same line follows from the first.
+        if line != told {
+            report.error(
+                span.clone(),
+                format!("not valid TOML: {}", in_words(error.message(), text.get(span.start..).unwrap_or_default())),
+                None,
+            );
+            told = line;
+        }
+    }
+    // A repaired tree would bring errors about what the repair lost.
+    errors.is_empty().then(|| Node { span: 0..0, value: table_of(table.get_ref()) })
+}
+
+/// What the parser says, in one line. Where a value is left out it speaks of the last kind of value it tried.
+fn in_words(message: &str, rest: &str) -> String {
+    if message.contains("literal string") && rest.trim_start_matches(' ').starts_with(['\n', '\r', '}', ']', ',', '#'])
+    {
+        return "a value is missing here".to_owned();
+    }
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn table_of(table: &DeTable<'_>) -> Value {
+    let entries = table.iter().map(|(key, value)| Entry {
+        key: key.get_ref().to_string(),
+        key_span: key.span(),
+        node: Node { span: value.span(), value: value_of(value.get_ref()) },
+    });
+    Value::Table(entries.collect())
+}
+
+// Recursion is bounded by the parser, which refuses more than 80 levels.
+fn value_of(value: &DeValue<'_>) -> Value {
+    match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        // 128 bits hold every whole number a person would write; beyond that it is too large, as 1e999 is.
+        DeValue::Integer(number) => {
+            Value::Number(i128::from_str_radix(number.as_str(), number.radix()).map_or(f64::INFINITY, |n| n as f64))
+        }
+        DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(truth) => Value::Truth(*truth),
+        DeValue::Datetime(_) => Value::Other("a date"),
+        DeValue::Array(items) => {
+            Value::List(items.iter().map(|item| Node { span: item.span(), value: value_of(item.get_ref()) }).collect())
+        }
+        DeValue::Table(table) => table_of(table),
+    }
+}

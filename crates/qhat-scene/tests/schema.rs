@@ -1,0 +1,169 @@
+//! The published schema says what the reader does: an independent validator and the reader agree on thousands of scenes
+//! that differ from a good one in a single place.
+
+use qhat_scene::{Format, SceneErrors, json_schema, load, shipped};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+fn every_key() -> Value {
+    toml::from_str(include_str!("every-key.toml")).unwrap()
+}
+
+fn read(scene: &Value) -> Result<(), SceneErrors> {
+    load(&scene.to_string(), "scene.json", Format::Json).map(|_| ())
+}
+
+#[test]
+fn the_schema_is_of_draft_2020_12_and_accepts_the_shipped_scenes() {
+    let schema = json_schema();
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    let validator = jsonschema::draft202012::new(&schema).unwrap();
+    for scene in shipped() {
+        let value: Value = toml::from_str(scene.text).unwrap();
+        assert!(validator.is_valid(&value), "{}", scene.name);
+    }
+    assert!(validator.is_valid(&every_key()));
+    read(&every_key()).unwrap_or_else(|errors| panic!("{errors}"));
+}
+
+/// The scene with one value put in the place of another, or removed, for every place and every value.
+fn variants(scene: &Value) -> Vec<Value> {
+    let mut places = Vec::new();
+    collect_places(scene, String::new(), &mut places);
+    let others = [
+        json!(null),
+        json!(true),
+        json!("x"),
+        json!(-1),
+        json!(0),
+        json!(0.5),
+        json!(3),
+        json!(1e-17),
+        json!([]),
+        json!({}),
+    ];
+    let mut variants = Vec::new();
+    for place in &places {
+        for other in &others {
+            let mut variant = scene.clone();
+            *variant.pointer_mut(place).unwrap() = other.clone();
+            variants.push(variant);
+        }
+        let (parent, key) = place.rsplit_once('/').unwrap_or_default();
+        let mut without = scene.clone();
+        match without.pointer_mut(parent) {
+            Some(Value::Object(table)) => drop(table.remove(key)),
+            Some(Value::Array(list)) => drop(list.remove(key.parse().unwrap())),
+            _ => {}
+        }
+        variants.push(without);
+        let mut with_more = scene.clone();
+        match with_more.pointer_mut(place) {
+            Some(Value::Object(table)) => drop(table.insert("unheard_of".into(), json!(1))),
+            Some(Value::Array(list)) => list.push(json!(1)),
+            _ => {}
+        }
+        variants.push(with_more);
+    }
+    variants
+}
+
+fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
+    match value {
+        Value::Object(table) => {
+            table.iter().for_each(|(key, value)| collect_places(value, format!("{place}/{key}"), places))
+        }
+        Value::Array(list) => {
+            list.iter()
+                .enumerate()
+                .for_each(|(index, value)| collect_places(value, format!("{place}/{index}"), places));
+        }
+        _ => {}
+    }
+    places.push(place);
+}
+
+/// What no schema says: what one key says about another.
+const BETWEEN_KEYS: [&str; 12] = [
+    "there is no ",
+    "is given twice",
+    "is given to two",
+    "cannot be connected to itself",
+    "must have 2 entries, but has 3",
+    "must have 3 entries, but has 2",
+    "cannot have a velocity",
+    "start 0 m apart",
+    "but that id is taken",
+    "must begin with the lower end",
+    "no particles",
+    "start at the same place",
+];
+
+#[test]
+fn the_reader_and_the_schema_agree() {
+    let schema = json_schema();
+    let validator = jsonschema::draft202012::new(&schema).unwrap();
+    let variants = variants(&every_key());
+    assert!(variants.len() > 1000);
+    for variant in variants {
+        match (validator.is_valid(&variant), read(&variant)) {
+            (true, Ok(())) | (false, Err(_)) => {}
+            (true, Err(errors)) => {
+                for error in &errors.errors {
+                    let is_between = BETWEEN_KEYS.iter().any(|phrase| error.message.contains(phrase));
+                    assert!(is_between, "the schema allows what the reader refuses:\n{error}");
+                }
+            }
+            (false, Ok(())) => {
+                let complaint = validator.iter_errors(&variant).next().map(|error| error.to_string());
+                panic!("the reader takes what the schema refuses: {complaint:?}\n{variant:#}");
+            }
+        }
+    }
+}
+
+/// The keys of all tables of the schema.
+fn keys(schema: &Value, found: &mut BTreeSet<String>) {
+    match schema {
+        Value::Object(table) => {
+            if let Some(Value::Object(properties)) = table.get("properties") {
+                found.extend(properties.keys().cloned());
+            }
+            table.values().for_each(|value| keys(value, found));
+        }
+        Value::Array(list) => list.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_guide_and_the_test_scene_name_every_key() {
+    let mut known = BTreeSet::new();
+    keys(&json_schema(), &mut known);
+    let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene-file.md")).unwrap();
+    let mut places = Vec::new();
+    collect_places(&every_key(), String::new(), &mut places);
+    for key in known {
+        assert!(guide.contains(&format!("`{key}`")), "docs/scene-file.md does not name `{key}`");
+        assert!(places.iter().any(|place| place.ends_with(&format!("/{key}"))), "every-key.toml lacks `{key}`");
+    }
+}
+
+#[test]
+fn every_key_is_described() {
+    fn walk(schema: &Value) {
+        let Value::Object(table) = schema else {
+            if let Value::Array(list) = schema {
+                list.iter().for_each(walk);
+            }
+            return;
+        };
+        if let Some(Value::Object(properties)) = table.get("properties") {
+            for (key, property) in properties {
+                assert!(key == "kind" || property.get("description").is_some(), "`{key}` has no words");
+            }
+        }
+        table.values().for_each(walk);
+    }
+    walk(&json_schema());
+}

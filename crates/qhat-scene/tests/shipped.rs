@@ -1,0 +1,108 @@
+//! The shipped scenes: every file listed, every expectation held, every rod as long as it should be.
+
+mod expectations;
+
+use qhat::{Feedback, Integrator, Settings, Simulation};
+use qhat_scene::{Format, Scene, load, shipped};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Simulated time over which lengths are held, at least [s].
+const LONG: f64 = 60.0;
+
+fn scene(name: &str) -> Scene {
+    let found = shipped().iter().find(|scene| scene.name == name).expect(name);
+    found.load().unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+#[test]
+fn the_list_is_the_folder() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files: BTreeSet<String> = files.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
+    let listed: BTreeSet<String> = shipped().iter().map(|scene| scene.name.to_owned()).collect();
+    assert_eq!(listed, files);
+    assert_eq!(listed.len(), shipped().len(), "a scene is listed twice");
+    assert!(listed.len() >= 12);
+}
+
+#[test]
+fn every_scene_says_what_there_is_to_see() {
+    for shipped in shipped() {
+        let scene = scene(shipped.name);
+        assert_eq!(shipped.title, scene.name);
+        assert!(scene.description.len() >= 40, "{}: {:?}", shipped.name, scene.description);
+        assert!(scene.expect.is_some(), "{} expects nothing", shipped.name);
+        let expects_length = scene.expect.and_then(|expect| expect.max_relative_length_error);
+        if scene.settings.integrator.projects() && scene.system.rods().next().is_some() {
+            assert!(expects_length.is_some_and(|error| error <= 1e-10), "{} promises no length", shipped.name);
+        }
+    }
+}
+
+/// The start in a file may be off by what its decimals leave out, no more: what a user reads is what runs.
+#[test]
+fn every_scene_starts_where_its_file_says() {
+    for shipped in shipped() {
+        let simulation = scene(shipped.name).simulation().unwrap();
+        let projection = simulation.projection();
+        // Coordinates carry 12 digits, velocities 9.
+        assert!(projection.moved <= 1e-10, "{} was moved by {} m", shipped.name, projection.moved);
+        assert!(projection.velocity_changed <= 1e-7, "{}: {} m/s", shipped.name, projection.velocity_changed);
+    }
+}
+
+#[test]
+fn every_scene_shows_what_it_says() {
+    let mut failures = Vec::new();
+    for shipped in shipped() {
+        let found = expectations::failures(&scene(shipped.name), LONG);
+        failures.extend(found.into_iter().map(|failure| format!("{}: {failure}", shipped.name)));
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Runs for a duration with these menus; the time at which it fell apart.
+fn falls_apart(scene: &Scene, feedback: Feedback, duration: f64) -> Option<f64> {
+    let mut simulation = scene.simulation().unwrap();
+    simulation.set_feedback(feedback).unwrap();
+    while simulation.state().time() < duration {
+        if simulation.step().is_err() {
+            return Some(simulation.state().time());
+        }
+    }
+    None
+}
+
+/// What the scene is for: the two menus of the source are what keeps it together.
+#[test]
+fn classic_needs_both_its_menus() {
+    let scene = scene("classic");
+    let menus = *scene.system.feedback();
+    assert_eq!(scene.settings.integrator, Integrator::Euler);
+    assert_eq!(falls_apart(&scene, menus, 10.0 * scene.duration), None);
+    assert!(falls_apart(&scene, Feedback { elasticity: 0.0, ..menus }, 10.0).is_some());
+    assert!(falls_apart(&scene, Feedback { diagonal_drag: 0.1 * menus.diagonal_drag, ..menus }, 10.0).is_some());
+}
+
+/// The same scene in the modern forms under rattle needs neither.
+#[test]
+fn classic_holds_under_rattle() {
+    let scene = scene("classic");
+    let system = scene.system.with_formulation(qhat::Formulation::Modern);
+    let mut simulation = Simulation::new(system, scene.state.clone(), Settings::default()).unwrap();
+    while simulation.state().time() < LONG {
+        let report = simulation.step().unwrap();
+        assert!(report.max_relative_length_error <= 1e-10);
+    }
+}
+
+#[test]
+fn toml_and_json_say_the_same() {
+    for shipped in shipped() {
+        let tree: serde_json::Value = toml::from_str(shipped.text).unwrap();
+        let text = serde_json::to_string_pretty(&tree).unwrap();
+        let from_json = load(&text, "scene.json", Format::Json).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(format!("{from_json:?}"), format!("{:?}", scene(shipped.name)), "{}", shipped.name);
+    }
+}
