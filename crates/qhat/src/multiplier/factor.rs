@@ -23,8 +23,9 @@ const TINY_PIVOT: f64 = 1e-12;
 /// amplified by 1/δ, so it must lie well above 1e-16.
 const REGULARIZATION: f64 = 1e-8;
 
-/// A solution that misses its right side by more than this, relative, was not solved by the plain factor.
-const ACCEPTED_RESIDUAL: f64 = 1e-9;
+/// A solution that misses its right side by more than this, relative, was not solved by the plain factor. Under a load of a
+/// billion beads x is a billion times b, and the rounding of x alone misses b by 1e-7; G would let such a load fall.
+const ACCEPTED_RESIDUAL: f64 = 1e-6;
 
 /// Where refinement has arrived: a few times roundoff.
 const REFINED: f64 = 1e-14;
