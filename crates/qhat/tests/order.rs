@@ -1,0 +1,127 @@
+//! The measured order of every integrator is its declared order ± 0.1, on constrained motion with every sort of force: in
+//! position, velocity and multipliers, and for the energy account it keeps.
+
+mod systems;
+
+use qhat::{
+    Dimension, Distance, Drag, Integrator, Particle, Settings, Simulation, Spring, State, System, Workspace, evaluate,
+    step,
+};
+use systems::dense::difference;
+
+/// A double pendulum of unequal masses with drag and a damped spring: forces in q and in q̇, and a constraint force that
+/// matters, so that a method which misses the velocity by its impulse falls to order 1.
+fn system() -> (System, State) {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let elbow = builder.particle(Particle::at("elbow", [0.8, -0.6]).with_velocity([0.6, 0.8]));
+    let tip = builder.particle(Particle::at("tip", [1.6, -1.2]).with_mass(0.4).with_velocity([1.2, 1.6]));
+    let anchor = builder.particle(Particle::at("anchor", [1.0, 1.0]).held());
+    builder.constraint("upper", Distance::new(pivot, elbow, 1.0)).constraint("lower", Distance::new(elbow, tip, 1.0));
+    builder.force(systems::gravity()).force(Drag { coefficient: 0.3 });
+    builder.force(Spring { a: tip, b: anchor, stiffness: 4.0, damping: 0.5, rest: 0.5 });
+    builder.build().unwrap()
+}
+
+const DURATION: f64 = 0.5;
+
+/// q, q̇, λ and the work booked after `steps` equal steps.
+fn run(integrator: Integrator, steps: usize) -> [Vec<f64>; 4] {
+    let (system, mut state) = system();
+    // RATTLE then takes each frame in one substep: an error of almost 1 is allowed, and h is below what stability and the
+    // turning of the rods ask for. The report says so. Newton is driven to roundoff, far below the error that is measured.
+    let settings = Settings {
+        integrator,
+        h: DURATION / steps as f64,
+        tolerance: 0.999,
+        constraint_tolerance: 1e-14,
+        ..Settings::default()
+    };
+    let mut workspace = Workspace::new(&system);
+    for _ in 0..steps {
+        let report = step(&system, &mut state, &settings, &mut workspace).unwrap();
+        assert_eq!((report.substeps, report.rejected), (1, 0), "{integrator} must keep its substep constant");
+    }
+    let terms = evaluate(&system, &state);
+    [state.positions().to_vec(), state.velocities().to_vec(), terms.multipliers, vec![state.work().dissipation]]
+}
+
+/// log₂ of the ratio of errors of two runs, one with twice the steps of the other.
+fn observed(coarse: f64, fine: f64) -> f64 {
+    libm::log2(coarse / fine)
+}
+
+fn check(integrator: Integrator, steps: [usize; 3]) {
+    // RK4 with 4e4 steps is exact to roundoff (h⁴ = 2e-20 in units of the motion's own time).
+    let exact = run(Integrator::Rk4, 40_000);
+    let runs = steps.map(|steps| run(integrator, steps));
+    for (k, what) in ["positions", "velocities", "multipliers", "dissipation"].into_iter().enumerate() {
+        let errors = runs.each_ref().map(|run| difference(&run[k], &exact[k]));
+        for pair in errors.windows(2) {
+            let order = observed(pair[0], pair[1]);
+            let declared = f64::from(integrator.order());
+            // ±0.1: the next term of the error expansion is at most a few per cent at these h.
+            assert!((order - declared).abs() < 0.1, "{integrator}: {what} of order {order}, errors {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn euler_is_of_order_one() {
+    check(Integrator::Euler, [2000, 4000, 8000]);
+}
+
+#[test]
+fn symplectic_euler_is_of_order_one() {
+    check(Integrator::SymplecticEuler, [2000, 4000, 8000]);
+}
+
+#[test]
+fn rk4_is_of_order_four() {
+    check(Integrator::Rk4, [120, 240, 480]);
+}
+
+#[test]
+fn rattle_is_of_order_two() {
+    check(Integrator::Rattle, [200, 400, 800]);
+}
+
+/// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors their
+/// square. Substeps are chosen from an estimate, so the power is not exact.
+#[test]
+fn rattle_follows_its_tolerance() {
+    let error = |tolerance: f64| {
+        let (system, state) = system();
+        let settings = Settings { h: 0.05, tolerance, constraint_tolerance: 1e-14, ..Settings::default() };
+        let mut simulation = Simulation::new(system, state, settings).unwrap();
+        for _ in 0..10 {
+            simulation.step().unwrap();
+        }
+        difference(simulation.state().positions(), &run(Integrator::Rk4, 40_000)[0])
+    };
+    let errors = [1e-4, 1e-6, 1e-8].map(error);
+    for pair in errors.windows(2) {
+        let power = libm::log10(pair[0] / pair[1]) / 2.0;
+        assert!((power - 2.0 / 3.0).abs() < 0.15, "power {power}, errors {errors:?}");
+    }
+}
+
+/// Symmetric: there and back again with the velocities turned round ends where it began. Only without drag.
+#[test]
+fn rattle_is_reversible() {
+    let (system, start) = systems::double_pendulum();
+    let settings = Settings { h: 1e-3, tolerance: 0.999, constraint_tolerance: 1e-14, ..Settings::default() };
+    let mut workspace = Workspace::new(&system);
+    let mut state = start.clone();
+    for _ in 0..2 {
+        for _ in 0..500 {
+            let report = step(&system, &mut state, &settings, &mut workspace).unwrap();
+            assert_eq!(report.substeps, 1);
+        }
+        let turned = state.velocities().iter().map(|v| -v).collect();
+        state = state.at(state.positions().to_vec(), turned);
+    }
+    // Roundoff of 1000 steps, multiplied by the motion's own sensitivity (about 1e2 in a second).
+    let error = difference(state.positions(), start.positions());
+    assert!(error < 1e-10, "off by {error:e}; the method's own error at this h is some 1e-5");
+}
