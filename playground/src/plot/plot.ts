@@ -53,7 +53,8 @@ export class Plot {
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        x: { time: false },
+        // one lone sample gets a second to stand in
+        x: { time: false, range: (_plot, min, max) => [min ?? 0, max > min ? max : (min ?? 0) + 1] },
         y: logarithmic
           ? { distr: 3, log: 10, range: (_plot, min, max) => decades(min, max) }
           : { range: (_plot, min, max) => room(min, max) },

@@ -42,6 +42,11 @@ export function vector(values: ArrayLike<number>, digits = 3): string {
   return `(${components.map((value) => format(Math.abs(value) < noise ? 0 : value, digits)).join(', ')})`;
 }
 
+/** The engine's errors read as sentences; on the page they also look like some. */
+export function sentence(message: string): string {
+  return message.charAt(0).toUpperCase() + message.slice(1) + (/[.!?]$/.test(message) ? '' : '.');
+}
+
 function minus(text: string): string {
   return text.replace('-', '−');
 }

@@ -112,6 +112,13 @@ export class Session {
     else this.fail(`No scene is called “${name}”. The list above has all that there are.`);
   }
 
+  /** Something no error was foreseen for: said, and the page stays usable. */
+  crash(error: unknown): void {
+    this.run = null;
+    this.ghost = null;
+    this.fail(`The engine broke off: ${String(error)}. Please report the scene.`);
+  }
+
   private fail(message: string): void {
     this.closeRuns();
     this.source = null;
@@ -158,8 +165,9 @@ export class Session {
   }
 
   private afterReset(): void {
-    this.stopped = null;
-    this.ghostStopped = null;
+    this.stopped = this.run?.stopped ?? null;
+    this.ghostStopped = this.ghost?.stopped?.message ?? null;
+    if (this.stopped) this.running = false;
     this.warnings = this.startWarnings();
     this.warnedMs = performance.now();
     this.history.clear();

@@ -38,8 +38,12 @@ export class Stage {
   start(): void {
     const loop = (timeMs: number) => {
       this.request = requestAnimationFrame(loop);
-      this.session.frame(timeMs);
-      this.draw();
+      try {
+        this.session.frame(timeMs);
+        this.draw();
+      } catch (error) {
+        this.session.crash(error);
+      }
     };
     this.request = requestAnimationFrame(loop);
   }

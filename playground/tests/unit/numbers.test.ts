@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { fixed, format, niceCeiling, vector } from '../../src/session/numbers';
+import { fixed, format, niceCeiling, sentence, vector } from '../../src/session/numbers';
 
 describe('numbers for people', () => {
   it.each([
@@ -39,4 +39,11 @@ describe('numbers for people', () => {
     [0, 1],
     [Number.NaN, 1],
   ])('the round number at or above %d is %d', (size, nice) => expect(niceCeiling(size)).toBe(nice));
+});
+
+describe('sentence', () => {
+  it.each([
+    ['at t = 1 s it fell', 'At t = 1 s it fell.'],
+    ['It fell.', 'It fell.'],
+  ])('%s becomes %s', (message, shown) => expect(sentence(message)).toBe(shown));
 });
