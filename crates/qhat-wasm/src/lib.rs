@@ -48,9 +48,8 @@ extern "C" {
 #[wasm_bindgen]
 pub fn shipped_scenes() -> ShippedScenes {
     let scenes = qhat_scene::shipped().iter();
-    let records = scenes.map(|scene| {
-        Record::new().with("name", scene.name).with("title", scene.title).with("text", scene.text)
-    });
+    let records =
+        scenes.map(|scene| Record::new().with("name", scene.name).with("title", scene.title).with("text", scene.text));
     list(records).unchecked_into()
 }
 
@@ -80,7 +79,8 @@ impl Simulation {
     /// `StepError`.
     #[wasm_bindgen(constructor)]
     pub fn new(text: &str, source_name: &str) -> Result<Simulation, JsValue> {
-        let scene = qhat_scene::load(text, source_name, Format::from_path(source_name)).map_err(|cause| error("SceneErrors", cause))?;
+        let scene = qhat_scene::load(text, source_name, Format::from_path(source_name))
+            .map_err(|cause| error("SceneErrors", cause))?;
         let inner = scene.simulation().map_err(|cause| error("StepError", cause))?;
         Ok(Simulation { inner, name: scene.name, description: scene.description })
     }
@@ -90,22 +90,22 @@ impl Simulation {
         convert::structure(self.inner.system(), &self.name, &self.description)
     }
 
-    /// t [s].
+    /// t \[s\].
     pub fn time(&self) -> f64 {
         self.inner.state().time()
     }
 
-    /// q [m]; a copy.
+    /// q \[m\]; a copy.
     pub fn positions(&self) -> Vec<f64> {
         self.inner.state().positions().to_vec()
     }
 
-    /// q̇ [m/s]; a copy.
+    /// q̇ \[m/s\]; a copy.
     pub fn velocities(&self) -> Vec<f64> {
         self.inner.state().velocities().to_vec()
     }
 
-    /// Tension of every rod [N], positive where it pulls.
+    /// Tension of every rod \[N\], positive where it pulls.
     pub fn tension(&mut self) -> Vec<f64> {
         self.inner.tension()
     }
@@ -146,12 +146,12 @@ impl Simulation {
         convert::set_controls(&mut self.inner, controls)
     }
 
-    /// Takes hold of a particle with a mouse spring towards a target [m].
+    /// Takes hold of a particle with a mouse spring towards a target \[m\].
     pub fn grab(&mut self, particle: usize, target: &[f64]) -> Result<(), JsValue> {
         self.inner.grab(ParticleId(particle), convert::target(target)).map_err(|cause| error("ForceError", cause))
     }
 
-    /// Moves the target of the mouse spring [m].
+    /// Moves the target of the mouse spring \[m\].
     pub fn drag_to(&mut self, target: &[f64]) -> Result<(), JsValue> {
         self.inner.drag_to(convert::target(target)).map_err(|cause| error("ForceError", cause))
     }

@@ -1,0 +1,25 @@
+//! What TypeScript is told is what Rust has.
+
+const TYPES: &str = include_str!("../src/types.d.ts");
+
+/// The fields of an interface, in order.
+fn fields(interface: &str) -> Vec<&'static str> {
+    let start = TYPES.find(&format!("export interface {interface} {{")).expect("the interface is declared");
+    let body = &TYPES[start..start + TYPES[start..].find("\n}").expect("the interface ends")];
+    let lines = body.lines().skip(1).map(str::trim).filter(|line| !line.starts_with("/**"));
+    lines.filter_map(|line| line.split_once(':')).map(|(name, _)| name).collect()
+}
+
+#[test]
+fn terms_have_the_fields_of_the_notation_table_in_its_order() {
+    let mut words: Vec<&str> = qhat::NOTATION.iter().map(|row| row.word).collect();
+    words.push("warnings"); // words, and no quantity with a symbol
+    assert_eq!(fields("Terms"), words);
+}
+
+#[test]
+fn every_integrator_is_named() {
+    for integrator in qhat::Integrator::ALL {
+        assert!(TYPES.contains(&format!("'{integrator}'")), "{integrator}");
+    }
+}
