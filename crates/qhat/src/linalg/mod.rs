@@ -7,6 +7,8 @@ mod ordering;
 mod rank;
 mod sparse;
 mod symmetric;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use rank::rank;
 pub(crate) use symmetric::Pattern;

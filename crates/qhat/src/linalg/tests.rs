@@ -1,0 +1,195 @@
+//! The factorizations against each other, against their own residuals, and against matrices whose answer is known.
+
+use super::ordering::minimum_degree;
+use super::{DenseLdl, Factor, Pattern, SparseLdl, SymmetricMatrix, rank};
+use proptest::prelude::*;
+use std::collections::BTreeSet;
+
+/// A symmetric matrix with dominant diagonal, so positive definite, with the couplings given as pairs; values from a seed.
+fn matrix(n: usize, pairs: &[(usize, usize)], seed: u64) -> (Pattern, Vec<f64>) {
+    let mut rows = vec![Vec::new(); n];
+    for &(i, j) in pairs {
+        let (i, j) = (i % n, j % n);
+        rows[i.max(j)].push(i.min(j));
+    }
+    let pattern = Pattern::from_rows(rows);
+    let mut state = seed;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut values: Vec<f64> = (0..pattern.len()).map(|_| random()).collect();
+    let mut sums = vec![0.1; n];
+    for i in 0..n {
+        for slot in pattern.start[i]..pattern.diagonal(i) {
+            sums[i] += values[slot].abs();
+            sums[pattern.column[slot]] += values[slot].abs();
+        }
+    }
+    for i in 0..n {
+        values[pattern.diagonal(i)] = sums[i];
+    }
+    (pattern, values)
+}
+
+fn any_matrix() -> impl Strategy<Value = (Pattern, Vec<f64>)> {
+    let pairs = proptest::collection::vec((0_usize..1000, 0_usize..1000), 0..160);
+    (1_usize..70, pairs, any::<u64>()).prop_map(|(n, pairs, seed)| matrix(n, &pairs, seed))
+}
+
+/// Row i + 1 is coupled to one row before it: a tree (or a forest, where `parents` says so).
+fn tree(parents: &[usize]) -> (Pattern, Vec<f64>) {
+    let pairs: Vec<(usize, usize)> = parents.iter().enumerate().map(|(i, parent)| (i + 1, parent % (i + 1))).collect();
+    matrix(parents.len() + 1, &pairs, 1)
+}
+
+/// Elimination in a given order by the textbook, where the neighbours of what goes become a clique: how many couplings
+/// that adds, and at each step the number of neighbours of what went beside the least there was.
+fn eliminate(pattern: &Pattern, order: &[usize]) -> (usize, Vec<(usize, usize)>) {
+    let mut neighbours = vec![BTreeSet::new(); pattern.order()];
+    for i in 0..pattern.order() {
+        for slot in pattern.start[i]..pattern.diagonal(i) {
+            neighbours[i].insert(pattern.column[slot]);
+            neighbours[pattern.column[slot]].insert(i);
+        }
+    }
+    let (mut added, mut degrees) = (0, Vec::new());
+    for (step, &gone) in order.iter().enumerate() {
+        let least = order[step..].iter().map(|&i| neighbours[i].len()).min().unwrap();
+        degrees.push((neighbours[gone].len(), least));
+        let clique: Vec<usize> = std::mem::take(&mut neighbours[gone]).into_iter().collect();
+        for (k, &i) in clique.iter().enumerate() {
+            neighbours[i].remove(&gone);
+            for &j in &clique[k + 1..] {
+                added += usize::from(neighbours[i].insert(j));
+                neighbours[j].insert(i);
+            }
+        }
+    }
+    (added, degrees)
+}
+
+fn fill(pattern: &Pattern, order: &[usize]) -> usize {
+    eliminate(pattern, order).0
+}
+
+fn right_side(n: usize) -> Vec<f64> {
+    (0..n).map(|i| (i as f64 * 0.618).fract() - 0.4).collect()
+}
+
+fn residual(pattern: &Pattern, values: &[f64], shift: f64, x: &[f64], b: &[f64]) -> f64 {
+    let mut Ax = vec![0.0; b.len()];
+    pattern.multiply(values, x, &mut Ax);
+    (0..b.len()).map(|i| (Ax[i] + shift * x[i] - b[i]).abs()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn minimum_degree_is_a_permutation((pattern, _) in any_matrix()) {
+        let mut order = minimum_degree(&pattern);
+        order.sort_unstable();
+        prop_assert_eq!(order, (0..pattern.order()).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn minimum_degree_is_perfect_on_trees(parents in proptest::collection::vec(0_usize..1000, 0..80)) {
+        let (pattern, _) = tree(&parents);
+        prop_assert_eq!(fill(&pattern, &minimum_degree(&pattern)), 0);
+    }
+
+    #[test]
+    fn minimum_degree_takes_the_least_coupled_each_time((pattern, _) in any_matrix()) {
+        let (_, degrees) = eliminate(&pattern, &minimum_degree(&pattern));
+        for (step, (taken, least)) in degrees.iter().enumerate() {
+            prop_assert_eq!(taken, least, "step {}", step);
+        }
+    }
+
+    #[test]
+    fn sparse_and_dense_solve_alike((pattern, values) in any_matrix(), shift in 0.0_f64..1.0) {
+        let n = pattern.order();
+        let (mut dense, mut sparse) = (DenseLdl::new(n), SparseLdl::new(&pattern));
+        let pivots = (dense.factor(&pattern, &values, shift), sparse.factor(&values, shift));
+        prop_assert!(pivots.0 > 0.0 && pivots.1 > 0.0, "{pivots:?} of a positive definite matrix");
+        let b = right_side(n);
+        let (mut x, mut y) = (b.clone(), b.clone());
+        dense.solve(&mut x);
+        sparse.solve(&mut y);
+        // Dominant diagonals of at least 0.1 bound x by 4 and the roundoff of 70 unknowns by 1e-13.
+        for i in 0..n {
+            prop_assert!((x[i] - y[i]).abs() < 1e-12, "x[{i}]: {} and {}", x[i], y[i]);
+        }
+        prop_assert!(residual(&pattern, &values, shift, &x, &b) < 1e-13);
+        prop_assert!(residual(&pattern, &values, shift, &y, &b) < 1e-13);
+    }
+
+    /// A second factorization, also after one that failed, knows nothing of the first.
+    #[test]
+    fn factors_can_be_made_again((pattern, values) in any_matrix(), spoil in 0_usize..70) {
+        let mut bad = values.clone();
+        bad[pattern.diagonal(spoil % pattern.order())] = -1.0;
+        let b = right_side(pattern.order());
+        let mut fresh = Factor::new(&pattern);
+        let mut used = Factor::new(&pattern);
+        prop_assert!(used.factor(&pattern, &bad, 0.0) <= 0.0, "an indefinite matrix has a pivot that is not positive");
+        prop_assert_eq!(used.factor(&pattern, &values, 0.0), fresh.factor(&pattern, &values, 0.0));
+        let (mut x, mut y) = (b.clone(), b);
+        fresh.solve(&mut x);
+        used.solve(&mut y);
+        prop_assert_eq!(x, y);
+    }
+
+    /// Rank of a Gram matrix of n unit vectors out of a space of r dimensions, some of them zero.
+    #[test]
+    fn rank_of_a_gram_matrix(n in 1_usize..40, r in 1_usize..12, zeros in 0_usize..3, seed in any::<u64>()) {
+        let mut state = seed | 1;
+        let vectors: Vec<Vec<f64>> = (0..n).map(|i| {
+            let mut v: Vec<f64> = (0..r).map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
+                (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            }).collect();
+            let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            v.iter_mut().for_each(|x| *x /= if i < zeros { f64::INFINITY } else { length });
+            v
+        }).collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let gram = vectors.iter().flat_map(|a| vectors.iter().map(move |b| dot(a, b))).collect();
+        prop_assert_eq!(rank(n, gram), r.min(n.saturating_sub(zeros)));
+    }
+}
+
+#[test]
+fn rank_of_known_matrices() {
+    assert_eq!(rank(0, vec![]), 0);
+    assert_eq!(rank(3, vec![0.0; 9]), 0);
+    assert_eq!(rank(3, vec![1.0; 9]), 1);
+    assert_eq!(rank(3, vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]), 3);
+    let c = 0.5_f64.sqrt();
+    assert_eq!(rank(3, vec![1.0, c, 0.0, c, 1.0, c, 0.0, c, 1.0]), 2, "the middle row is the mean of its neighbours");
+    let almost = 1.0 - 1e-9; // a pivot of 2e-9: a mass ratio, not roundoff
+    assert_eq!(rank(2, vec![1.0, almost, almost, 1.0]), 2);
+    assert_eq!(rank(1, vec![f64::NAN]), 0);
+}
+
+#[test]
+fn a_star_is_eliminated_from_its_tips() {
+    let (pattern, _) = tree(&[0; 50]);
+    let order = minimum_degree(&pattern);
+    assert!(order.iter().position(|&i| i == 0).unwrap() >= 49, "the hub last or next to last: {order:?}");
+    assert_eq!(fill(&pattern, &(0..51).collect::<Vec<_>>()), 50 * 49 / 2, "hub first fills everything");
+}
+
+#[test]
+fn matrices_read_back_what_was_put_in() {
+    let pattern = Pattern::from_rows(vec![vec![], vec![0, 0, 5], vec![1]]);
+    assert_eq!((pattern.order(), pattern.len()), (3, 5), "no entry twice, and none above the diagonal");
+    let matrix = SymmetricMatrix { pattern, values: vec![1.0, 2.0, 3.0, 4.0, 5.0] };
+    assert_eq!(matrix.to_dense(), [1.0, 2.0, 0.0, 2.0, 3.0, 4.0, 0.0, 4.0, 5.0]);
+    assert_eq!((matrix.get(0, 2), matrix.get(1, 2), matrix.get(2, 1)), (0.0, 4.0, 4.0));
+    let mut out = [0.0; 3];
+    matrix.multiply(&[1.0, 10.0, 100.0], &mut out);
+    assert_eq!(out, [21.0, 432.0, 540.0]);
+    assert_eq!((matrix.order(), matrix.stored()), (3, 5));
+}

@@ -1,0 +1,271 @@
+//! Every fast path equals one slow dense reference: the sparse and the dense factorization against faer's eigenvalue
+//! decomposition, redundant systems against the pseudo-inverse, and any numbering of particles and rows against any other.
+
+#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
+
+mod systems;
+
+use faer::{Mat, Side};
+use qhat::{
+    Constraint, Dimension, Distance, Force, Integrator, Nail, NamedConstraint, Particle, ParticleId, Settings,
+    Simulation, State, System, Terms, Warning, Workspace, evaluate, project,
+};
+use systems::dense::{assert_all_close, difference, largest, norm};
+use systems::random::{Random, web};
+
+/// The least-norm solution of (S A S) x = S b, S = diag(A)^(−½), as λ = S x, through the eigenvalues of S A S. Returns λ
+/// and the rank: eigenvalues below 1e-11 of the largest count as zero.
+fn reference(terms: &Terms) -> (Vec<f64>, usize) {
+    let (m, A) = (terms.right_hand_side.len(), &terms.constraint_matrix);
+    let scale = |i: usize| if A.get(i, i) > 0.0 { 1.0 / A.get(i, i).sqrt() } else { 0.0 };
+    let M = Mat::from_fn(m, m, |i, j| scale(i) * A.get(i, j) * scale(j));
+    let eigen = M.self_adjoint_eigen(Side::Lower).unwrap();
+    let (U, sigma) = (eigen.U(), eigen.S());
+    let largest = (0..m).fold(0.0, |most: f64, k| most.max(sigma[k]));
+    let mut lambda = vec![0.0; m];
+    let mut rank = 0;
+    for k in (0..m).filter(|&k| sigma[k] > 1e-11 * largest) {
+        rank += 1;
+        let share: f64 = (0..m).map(|i| U[(i, k)] * scale(i) * terms.right_hand_side[i]).sum::<f64>() / sigma[k];
+        for i in 0..m {
+            lambda[i] += scale(i) * U[(i, k)] * share;
+        }
+    }
+    (lambda, rank)
+}
+
+/// q̈ = W (Q + Jᵀ λ).
+fn accelerations(system: &System, terms: &Terms, lambda: &[f64]) -> Vec<f64> {
+    let Jt = systems::dense::multiply_transposed(&terms.jacobian.to_dense(), terms.positions.len(), lambda);
+    let W = |k: usize| system.inverse_masses()[k / system.dimension()];
+    Jt.iter().enumerate().map(|(k, force)| W(k) * (terms.applied_forces[k] + force)).collect()
+}
+
+fn check(name: &str, system: &System, state: &State) {
+    let terms = evaluate(system, state);
+    let (lambda, rank) = reference(&terms);
+    let qdd = accelerations(system, &terms, &lambda);
+    // The eigenvalue decomposition keeps about 1e-14 of A's norm; chains and trusses multiply that by 1e2 to 1e3.
+    let scale = largest(&qdd).max(largest(&terms.right_hand_side)).max(1.0);
+    assert_all_close(&format!("{name}: q̈"), &terms.accelerations, &qdd, 1e-10 * scale);
+    let size = largest(&lambda).max(1e-3);
+    assert_all_close(&format!("{name}: λ"), &terms.multipliers, &lambda, 1e-8 * size);
+    assert_eq!(terms.rank, Some(rank), "{name}: rank of {} rows", system.row_count());
+    assert_eq!(terms.warnings.contains(&Warning::Singular), rank < system.row_count(), "{name}");
+}
+
+/// A hub with `arms` rods, some of them with a second rod at the end.
+fn star(arms: usize) -> (System, State) {
+    let mut builder = System::builder(Dimension::Three);
+    let hub = builder.particle(Particle::at("hub", [0.0; 3]).with_velocity([1.0, 0.0, 0.0]).with_mass(2.0));
+    for i in 0..arms {
+        let angle = 2.4 * i as f64;
+        let x = [libm::cos(angle), libm::sin(angle), 0.02 * i as f64];
+        let tip = builder.particle(Particle::at(format!("t{i}"), x).with_mass(0.1 + 0.05 * i as f64));
+        builder.constraint(format!("arm{i}"), Distance::new(hub, tip, norm(&x)));
+        if i % 3 == 0 {
+            let end = builder.particle(Particle::at(format!("e{i}"), [2.0 * x[0], 2.0 * x[1], 1.0]));
+            let d = [x[0], x[1], 1.0 - x[2]];
+            builder.constraint(format!("end{i}"), Distance::new(tip, end, norm(&d)));
+        }
+    }
+    builder.force(systems::gravity()).force(qhat::Drag { coefficient: 0.3 });
+    builder.build().unwrap()
+}
+
+/// The same at velocities that are not zero, so that γ takes part, and legal, so that redundant rows agree about C̈.
+fn moving(random: &mut Random, (system, state): (System, State)) -> (System, State) {
+    let d = system.dimension();
+    let v = (0..state.velocities().len()).map(|k| {
+        let v = random.within(-1.0, 1.0);
+        if system.inverse_masses()[k / d] == 0.0 { 0.0 } else { v }
+    });
+    let mut state = state.at(state.positions().to_vec(), v.collect());
+    project(&system, &mut state, &Settings::default(), &mut Workspace::new(&system)).unwrap();
+    (system, state)
+}
+
+/// Regular systems on both sides of the limit of 24 rows at which the sparse factorization takes over.
+#[test]
+fn multipliers_equal_the_dense_reference() {
+    let mut random = Random::new(9);
+    let mut cases = vec![("pendulum", systems::pendulum(1.0)), ("double pendulum", systems::double_pendulum())];
+    cases.extend([2, 23, 24, 25, 26, 80].map(|n| ("chain", systems::chain(n, 1.0))));
+    cases.extend([10, 40].map(|n| ("heavy chain", systems::chain(n, 1000.0))));
+    cases.extend([2, 3, 4, 6].map(|n| ("net", systems::net(n))));
+    cases.extend([1, 4, 5, 20].map(|n| ("truss", systems::truss(n, false))));
+    cases.extend([3, 18, 19, 60].map(|n| ("star", star(n))));
+    cases.push(("free structure", systems::free_structure()));
+    for (name, case) in cases {
+        let (system, state) = moving(&mut random, case);
+        check(&format!("{name} of {} rows", system.row_count()), &system, &state);
+    }
+    for (d, n) in [(2, 5), (2, 24), (2, 60), (3, 12), (3, 50)] {
+        let (system, state) = web(&mut random, d, n);
+        check(&format!("web of {n} in {d}D"), &system, &state);
+    }
+}
+
+/// Redundant rows: q̈ is that of the pseudo-inverse to 1e-10, λ the least in rows scaled by √A_ii to 1e-8.
+#[test]
+fn redundant_systems_equal_the_pseudo_inverse() {
+    let mut random = Random::new(10);
+    for panels in [2, 4, 8, 20] {
+        let (system, state) = moving(&mut random, systems::truss(panels, true));
+        check(&format!("braced truss of {panels}"), &system, &state);
+    }
+    // Every row twice, and the nails of a net three times: many null vectors at once.
+    for (name, case, times) in
+        [("net", systems::net(3), 2), ("chain", systems::chain(9, 5.0), 3), ("long chain", systems::chain(30, 5.0), 2)]
+    {
+        let (system, state) = moving(&mut random, case);
+        let copies = (0..times).flat_map(|k| system.constraints().iter().map(move |c| (k, c)));
+        let rows = copies.map(|(k, c)| NamedConstraint { name: format!("{} {k}", c.name), ..c.clone() }).collect();
+        let (system, state) = rebuilt(&system, &state, &Numbering::of(&system, rows));
+        check(&format!("{name}, {times} times"), &system, &state);
+    }
+}
+
+/// Rows that contradict each other about C̈: the q̈ that comes nearest, and the least λ for it.
+#[test]
+fn contradicting_rows_come_as_near_as_they_can() {
+    let mut random = Random::new(14);
+    for (system, state) in [systems::truss(4, true), systems::net(2)] {
+        let state = state.at(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
+        let terms = evaluate(&system, &state);
+        let (lambda, rank) = reference(&terms);
+        assert_eq!((terms.rank, rank), (Some(system.row_count() - 1), system.row_count() - 1));
+        let qdd = accelerations(&system, &terms, &lambda);
+        // What contradicts is taken out of b first; 1e-16 of it remains and is divided by δ = 1e-8 in λ.
+        assert_all_close("q̈", &terms.accelerations, &qdd, 1e-7 * largest(&qdd));
+        assert_all_close("λ", &terms.multipliers, &lambda, 1e-6 * largest(&lambda));
+    }
+}
+
+/// How to number everything anew: particle `particles[i]` comes i-th.
+struct Numbering {
+    particles: Vec<usize>,
+    constraints: Vec<NamedConstraint>,
+}
+
+impl Numbering {
+    fn of(system: &System, constraints: Vec<NamedConstraint>) -> Self {
+        Numbering { particles: (0..system.particle_count()).collect(), constraints }
+    }
+}
+
+/// The same system, numbered anew.
+fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, State) {
+    let d = system.dimension();
+    let new = |old: ParticleId| ParticleId(numbering.particles.iter().position(|&i| i == old.0).unwrap());
+    let mut builder = System::builder(systems::random::dimension(d));
+    for &i in &numbering.particles {
+        let (x, v) = (&state.positions()[i * d..][..d], &state.velocities()[i * d..][..d]);
+        let particle = Particle::at(system.particle_names()[i].clone(), x).with_mass(system.masses()[i]);
+        let fixed = system.inverse_masses()[i] == 0.0;
+        builder.particle(if fixed { particle.held() } else { particle.with_velocity(v) });
+    }
+    for named in &numbering.constraints {
+        let constraint: Constraint = match named.constraint.clone() {
+            Constraint::Distance(rod) => Distance { a: new(rod.a), b: new(rod.b), ..rod }.into(),
+            Constraint::Nail(nail) => Nail { particle: new(nail.particle), ..nail }.into(),
+        };
+        builder.constraint(named.name.clone(), constraint);
+    }
+    for force in system.forces() {
+        builder.force(match force.clone() {
+            Force::Spring(s) => qhat::Spring { a: new(s.a), b: new(s.b), ..s }.into(),
+            Force::PointForce(f) => qhat::PointForce { particle: new(f.particle), ..f }.into(),
+            Force::MouseSpring(m) => qhat::MouseSpring { particle: new(m.particle), ..m }.into(),
+            other => other,
+        });
+    }
+    builder.feedback(*system.feedback());
+    builder.build().unwrap()
+}
+
+/// Particles and rows in a random order, and back.
+#[test]
+fn renumbering_changes_nothing() {
+    let mut random = Random::new(12);
+    let mut cases = vec![systems::chain(12, 3.0), systems::chain(40, 3.0), systems::net(4), star(20)];
+    cases.extend([systems::truss(8, true), systems::free_structure()]);
+    let mut cases: Vec<_> = cases.into_iter().map(|case| moving(&mut random, case)).collect();
+    cases.extend([(2, 9), (3, 30)].map(|(d, n)| web(&mut random, d, n)));
+    for (system, state) in cases {
+        let rows = random.order(system.constraints().len()).into_iter().map(|i| system.constraints()[i].clone());
+        let rows = rows.collect();
+        let numbering = Numbering { particles: random.order(system.particle_count()), constraints: rows };
+        let (other, other_state) = rebuilt(&system, &state, &numbering);
+        let (a, b) = (evaluate(&system, &state), evaluate(&other, &other_state));
+
+        let d = system.dimension();
+        let place = |i: usize| numbering.particles.iter().position(|&p| p == i).unwrap();
+        let back = |flat: &[f64]| -> Vec<f64> {
+            (0..system.particle_count()).flat_map(|i| flat[place(i) * d..][..d].to_vec()).collect()
+        };
+        // Sums in another order and another elimination: roundoff, times a condition of up to 1e4.
+        let scale = largest(&a.accelerations).max(largest(&a.right_hand_side));
+        assert_all_close("q̈", &back(&b.accelerations), &a.accelerations, 1e-11 * scale);
+        for (row, name) in system.row_names().iter().enumerate() {
+            let other_row = other.row_names().iter().position(|n| n == name).unwrap();
+            let off = (a.multipliers[row] - b.multipliers[other_row]).abs();
+            assert!(off <= 1e-9 * largest(&a.multipliers), "λ of {name}: off by {off:e}");
+        }
+        assert_eq!(a.rank, b.rank);
+    }
+}
+
+/// The motion does not depend on the numbering, either, as long as it is not chaotic.
+#[test]
+fn renumbering_changes_no_motion() {
+    let (system, state) = systems::net(4);
+    let mut random = Random::new(13);
+    let rows = random.order(system.constraints().len()).into_iter().map(|i| system.constraints()[i].clone()).collect();
+    let numbering = Numbering { particles: random.order(system.particle_count()), constraints: rows };
+    let (other, other_state) = rebuilt(&system, &state, &numbering);
+    for integrator in [Integrator::Rattle, Integrator::Rk4, Integrator::Euler] {
+        let settings = systems::settings(integrator, if integrator.is_adaptive() { 0.01 } else { 1e-4 });
+        let mut a = Simulation::new(system.clone(), state.clone(), settings).unwrap();
+        let mut b = Simulation::new(other.clone(), other_state.clone(), settings).unwrap();
+        for _ in 0..if integrator.is_adaptive() { 10 } else { 1000 } {
+            a.step().unwrap();
+            b.step().unwrap();
+        }
+        let (a, b) = (a.state().positions(), b.state().positions());
+        let place = |i: usize| numbering.particles.iter().position(|&p| p == i).unwrap();
+        let back: Vec<f64> = (0..16).flat_map(|i| b[place(i) * 3..][..3].to_vec()).collect();
+        // Newton stops at half of 1e-10, wherever it comes from; roundoff alone would leave 1e-13.
+        assert!(difference(a, &back) < 1e-8, "{integrator}: off by {:e}", difference(a, &back));
+    }
+}
+
+/// Several small systems side by side are factored sparsely where each alone is dense: the same numbers.
+#[test]
+fn sparse_equals_dense() {
+    let (system, state) = systems::truss(4, false);
+    let alone = evaluate(&system, &state);
+    assert!(system.row_count() <= 24);
+    let mut builder = System::builder(Dimension::Two);
+    for copy in 0..3 {
+        for (i, x) in state.positions().chunks(2).enumerate() {
+            let particle = Particle::at(format!("{i} of {copy}"), x).with_mass(system.masses()[i]);
+            builder.particle(if system.inverse_masses()[i] == 0.0 { particle.held() } else { particle });
+        }
+        let shift = |id: ParticleId| ParticleId(id.0 + copy * system.particle_count());
+        for named in system.constraints() {
+            let constraint: Constraint = match named.constraint.clone() {
+                Constraint::Distance(rod) => Distance { a: shift(rod.a), b: shift(rod.b), ..rod }.into(),
+                Constraint::Nail(nail) => Nail { particle: shift(nail.particle), ..nail }.into(),
+            };
+            builder.constraint(format!("{} of {copy}", named.name), constraint);
+        }
+    }
+    builder.force(systems::gravity());
+    let (triple, triple_state) = builder.build().unwrap();
+    let together = evaluate(&triple, &triple_state);
+    for copy in together.multipliers.chunks(system.row_count()) {
+        // Another order of elimination: roundoff times a condition of about 1e2.
+        assert_all_close("λ", copy, &alone.multipliers, 1e-12 * largest(&alone.multipliers));
+    }
+}
