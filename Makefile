@@ -47,7 +47,7 @@ tests:
 	@echo "Testing the Rust crates"
 	@cargo test --release $(WORKSPACE)
 	@echo "Testing that a debug build computes the same bits"
-	@cargo test --package qhat --test golden
+	@cargo test --package qhat-scene --test golden
 	@echo "Testing that wasm computes the same bits"
 	@scripts/build-wasm --node
 	@node --test crates/qhat-wasm/tests/golden.mjs

@@ -1,0 +1,66 @@
+//! The same bits everywhere: a hash of q, q̇ and λ after some steps of shipped scenes, the same in debug, in release and
+//! in WebAssembly (`crates/qhat-wasm/tests/golden.mjs` reads the same file).
+//!
+//! A change that is meant to change bits, in the engine or in a scene, writes the file anew:
+//! `QHAT_GOLDEN=write cargo test --release --package qhat-scene --test golden`, and says so in its message.
+
+use qhat::{Settings, Simulation};
+use std::fmt::Write as _;
+
+const CASES: &str = include_str!("golden.txt");
+
+/// FNV-1a (Fowler, Noll, Vo), 64 bits, over the bytes of the numbers, least significant first.
+fn hash<'a>(numbers: impl Iterator<Item = &'a f64>) -> u64 {
+    let bytes = numbers.flat_map(|number| number.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// One line: scene, integrator, h [s], steps, hash.
+fn run(words: &[&str]) -> String {
+    let [name, integrator, h, steps, ..] = words else { panic!("scene, integrator, h, steps, hash: {words:?}") };
+    let shipped = qhat_scene::shipped().iter().find(|shipped| shipped.name == *name);
+    let scene = shipped.unwrap_or_else(|| panic!("no scene is called {name}")).load().unwrap();
+    let mut simulation: Simulation = scene.simulation().unwrap();
+    let h = h.parse().unwrap();
+    let settings = Settings { integrator: integrator.parse().unwrap(), h, ..*simulation.settings() };
+    simulation.set_settings(settings).unwrap();
+    for step in 0..steps.parse().unwrap() {
+        simulation.step().unwrap_or_else(|error| panic!("{words:?}, step {step}: {error}"));
+    }
+    let lambda = simulation.terms().multipliers;
+    let state = simulation.state();
+    format!("{:016x}", hash(state.positions().iter().chain(state.velocities()).chain(&lambda)))
+}
+
+#[test]
+fn every_case_ends_in_the_same_bits() {
+    let mut fresh = String::new();
+    let mut wrong = Vec::new();
+    for line in CASES.lines() {
+        if line.is_empty() || line.starts_with('#') {
+            writeln!(fresh, "{line}").unwrap();
+            continue;
+        }
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let hash = run(&words);
+        writeln!(fresh, "{:<16} {:<17} {:<6} {:>4}  {hash}", words[0], words[1], words[2], words[3]).unwrap();
+        if words.get(4) != Some(&hash.as_str()) {
+            wrong.push(format!("{line}\n    is now {hash}"));
+        }
+    }
+    if std::env::var_os("QHAT_GOLDEN").is_some_and(|value| value == "write") {
+        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden.txt"), fresh).unwrap();
+    } else {
+        let how = "if that is meant: QHAT_GOLDEN=write cargo test --release --package qhat-scene --test golden";
+        assert!(wrong.is_empty(), "other bits than before:\n{}\n{how}", wrong.join("\n"));
+    }
+}
+
+/// The hash itself, by its published test vectors: of nothing, and of the byte 0 eight times by hand.
+#[test]
+fn hash_is_fnv_1a() {
+    assert_eq!(hash([].iter()), 0xcbf2_9ce4_8422_2325);
+    let zeros = (0..8).fold(0xcbf2_9ce4_8422_2325_u64, |hash, _| hash.wrapping_mul(0x0100_0000_01b3));
+    assert_eq!(hash([0.0].iter()), zeros);
+    assert_ne!(hash([0.0].iter()), hash([-0.0].iter()), "the sign of zero counts");
+}
