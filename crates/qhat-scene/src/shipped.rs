@@ -46,6 +46,7 @@ pub fn shipped() -> &'static [Shipped] {
             "hanging-chain",
             "heavy-end",
             "net",
+            "bracket",
             "bridge-truss",
             "girder",
             "four-bar",

@@ -54,11 +54,12 @@ fn every_scene_starts_where_its_file_says() {
 
 #[test]
 fn every_scene_shows_what_it_says() {
-    let mut failures = Vec::new();
-    for shipped in shipped() {
-        let found = expectations::failures(&scene(shipped.name), LONG);
-        failures.extend(found.into_iter().map(|failure| format!("{}: {failure}", shipped.name)));
-    }
+    let failures: Vec<String> = std::thread::scope(|scope| {
+        let run = |name| move || (name, expectations::failures(&scene(name), LONG));
+        let runs: Vec<_> = shipped().iter().map(|shipped| scope.spawn(run(shipped.name))).collect();
+        let found = runs.into_iter().map(|run| run.join().expect("no scene panics"));
+        found.flat_map(|(name, found)| found.into_iter().map(move |failure| format!("{name}: {failure}"))).collect()
+    });
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 

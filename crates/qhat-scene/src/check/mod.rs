@@ -166,12 +166,10 @@ impl<'a> Checker<'a, '_, '_> {
             self.report.error(node.span.clone(), message, Some(meaning.help(name)));
             return None;
         }
-        let pattern = PATTERNS.iter().find(|(pattern, ..)| *pattern == meaning.text("pattern"));
-        if let Some((_, agrees, words)) = pattern
-            && !agrees(text)
-        {
+        let pattern = PATTERNS.iter().find(|pattern| pattern.regex == meaning.text("pattern"));
+        if let Some(pattern) = pattern.filter(|pattern| !(pattern.agrees)(text)) {
             let message = format!("{} cannot be `{name}`", self.report.quoted(text));
-            self.report.error(node.span.clone(), message, Some(format!("use {words}")));
+            self.report.error(node.span.clone(), message, Some(format!("use {}", pattern.words)));
             return None;
         }
         Some(Json::String(text.to_owned()))

@@ -3,13 +3,24 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-const ID: &str = r"^[\p{L}_][\p{L}\p{N}_]{0,63}$";
-const NAME: &str = r"^[\p{L}_][\p{L}\p{N}_.()-]{0,127}$";
+const ID: &str = r"^[\p{Alphabetic}_][\p{Alphabetic}\p{N}_]{0,63}$";
+const NAME: &str = r"^[\p{Alphabetic}_][\p{Alphabetic}\p{N}_.()-]{0,127}$";
 
-/// The patterns of the schema, the functions that check them, and what they ask for in words.
-pub(crate) const PATTERNS: [(&str, fn(&str) -> bool, &str); 2] = [
-    (ID, is_id, "letters, digits and `_`, a letter or `_` first, 64 at most"),
-    (NAME, is_name, "letters, digits and `_ . - ( )`, a letter or `_` first, 128 at most"),
+/// A pattern of the schema, the function that checks it, and what it asks for in words.
+pub(crate) struct Pattern {
+    pub(crate) regex: &'static str,
+    pub(crate) agrees: fn(&str) -> bool,
+    pub(crate) words: &'static str,
+}
+
+/// All patterns of the schema.
+pub(crate) const PATTERNS: [Pattern; 2] = [
+    Pattern { regex: ID, agrees: is_id, words: "letters, digits and `_`, a letter or `_` first, 64 at most" },
+    Pattern {
+        regex: NAME,
+        agrees: is_name,
+        words: "letters, digits and `_ . - ( )`, a letter or `_` first, 128 at most",
+    },
 ];
 
 /// The id of a particle. An identifier, so that an expression can name it.

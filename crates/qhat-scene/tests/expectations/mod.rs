@@ -4,7 +4,7 @@ use qhat::{ParticleId, Simulation};
 use qhat_scene::{Axis, Expect, Scene};
 
 /// Every expectation that fails, in words.
-pub fn failures(scene: &Scene, long: f64) -> Vec<String> {
+pub(crate) fn failures(scene: &Scene, long: f64) -> Vec<String> {
     let expect = scene.expect.clone().unwrap_or_default();
     let mut simulation = match scene.simulation() {
         Ok(simulation) => simulation,
