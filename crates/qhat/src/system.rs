@@ -373,7 +373,7 @@ impl SystemBuilder {
                 return Err(wrong("position and velocity must be finite numbers".into()));
             }
             if !(particle.mass.is_finite() && particle.mass > 0.0 && (1.0 / particle.mass).is_finite()) {
-                return Err(wrong(format!("the mass must be positive and finite, but is {} kg", particle.mass)));
+                return Err(wrong(format!("the mass must be positive and finite, but is {:?} kg", particle.mass)));
             }
             if particle.fixed && particle.velocity.iter().any(|&v| v != 0.0) {
                 return Err(wrong("a fixed particle cannot have a velocity".into()));
