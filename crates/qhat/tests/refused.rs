@@ -31,7 +31,7 @@ fn particles_that_cannot_be() {
     let finite = "particle `c`: position and velocity must be finite numbers";
     assert_eq!(refuse(Particle::at("c", [f64::NAN, 0.0])), finite);
     assert_eq!(refuse(Particle::at("c", [0.0, 0.0]).with_velocity([0.0, f64::INFINITY])), finite);
-    for (mass, shown) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+    for (mass, shown) in [(0.0, "0.0"), (-1.0, "-1.0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         let expected = format!("particle `c`: the mass must be positive and finite, but is {shown} kg");
         assert_eq!(refuse(Particle::at("c", [2.0, 0.0]).with_mass(mass)), expected);
     }
