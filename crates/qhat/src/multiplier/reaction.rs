@@ -17,11 +17,11 @@ pub(crate) fn constraint_forces<const D: usize>(J: &Jacobian, lambda: &[f64], s:
     }
 }
 
-/// out = W (Q + Q̂).
-pub(crate) fn accelerations<const D: usize>(W: &[f64], Q: &[f64], Q_hat: &[f64], out: &mut [f64]) {
+/// q̈ = W (Q + Q̂).
+pub(crate) fn accelerations<const D: usize>(W: &[f64], Q: &[f64], Q_hat: &[f64], qdd: &mut [f64]) {
     for (i, &w) in W.iter().enumerate() {
         for k in i * D..(i + 1) * D {
-            out[k] = w * (Q[k] + Q_hat[k]);
+            qdd[k] = w * (Q[k] + Q_hat[k]);
         }
     }
 }
