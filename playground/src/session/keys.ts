@@ -56,9 +56,12 @@ export class Keys {
 
   private readonly down = (event: KeyboardEvent) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    const target = event.target instanceof Element ? event.target : document.body;
+    let target = event.target instanceof Element ? event.target : document.body;
+    const dialog = target.closest('dialog');
     // an open dialog closes itself
-    if (target.closest('dialog')) return;
+    if (dialog?.open) return;
+    // focus stays in a dialog for a moment after it has closed; what is not there cannot answer
+    if (dialog) target = document.body;
     if (target.closest('input, select, textarea') && event.key !== 'Escape') return;
     // a focused button answers to space itself
     if (event.key === ' ' && target.closest('button, summary')) return;
