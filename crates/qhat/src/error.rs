@@ -1,5 +1,6 @@
 //! Typed errors. Each reads as a sentence with the names a user gave.
 
+use crate::settings::Integrator;
 use thiserror::Error;
 
 /// Why a system could not be built.
@@ -48,7 +49,7 @@ pub enum SettingsError {
         range: &'static str,
     },
     /// An integrator that does not exist.
-    #[error("there is no integrator `{name}`; use euler, symplectic-euler, rk4 or rattle")]
+    #[error("there is no integrator `{name}`; use one of {}", Integrator::ALL.map(Integrator::name).join(", "))]
     UnknownIntegrator {
         /// What was given.
         name: String,

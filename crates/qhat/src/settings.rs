@@ -16,12 +16,22 @@ pub enum Integrator {
     /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
     #[default]
     Rattle,
+    /// Runge–Kutta of order 5 on the equation, projected after each step; substeps of its own choosing.
+    Dopri5,
+    /// Runge–Kutta of order 8 on the equation, projected after each step; substeps of its own choosing.
+    Dop853,
 }
 
 impl Integrator {
     /// All of them.
-    pub const ALL: [Integrator; 4] =
-        [Integrator::Euler, Integrator::SymplecticEuler, Integrator::Rk4, Integrator::Rattle];
+    pub const ALL: [Integrator; 6] = [
+        Integrator::Euler,
+        Integrator::SymplecticEuler,
+        Integrator::Rk4,
+        Integrator::Rattle,
+        Integrator::Dopri5,
+        Integrator::Dop853,
+    ];
 
     /// The name in scene files and commands.
     pub fn name(self) -> &'static str {
@@ -30,17 +40,19 @@ impl Integrator {
             Integrator::SymplecticEuler => "symplectic-euler",
             Integrator::Rk4 => "rk4",
             Integrator::Rattle => "rattle",
+            Integrator::Dopri5 => "dopri5",
+            Integrator::Dop853 => "dop853",
         }
     }
 
     /// Whether it chooses its own substeps within a frame of h (otherwise it takes steps of exactly h).
     pub fn is_adaptive(self) -> bool {
-        matches!(self, Integrator::Rattle)
+        matches!(self, Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
     /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of [`Feedback`]).
     pub fn projects(self) -> bool {
-        matches!(self, Integrator::Rattle)
+        matches!(self, Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
     /// Global order of convergence in h.
@@ -49,6 +61,8 @@ impl Integrator {
             Integrator::Euler | Integrator::SymplecticEuler => 1,
             Integrator::Rattle => 2,
             Integrator::Rk4 => 4,
+            Integrator::Dopri5 => 5,
+            Integrator::Dop853 => 8,
         }
     }
 }

@@ -100,6 +100,9 @@ export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
     'New velocity first, then positions with it: the energy stays near, the constraints still drift.',
   rk4: 'Four force evaluations a step: small drift, never corrected without feedback.',
   rattle: 'Projects positions and velocities onto the constraints at every step: no drift to correct.',
+  dopri5:
+    'Order five with substeps of its own choosing, projected after each: accurate and cheap for small systems.',
+  dop853: 'Order eight with substeps of its own choosing, projected after each: the most accurate one here.',
 };
 
 export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {

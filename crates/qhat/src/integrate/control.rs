@@ -60,8 +60,9 @@ pub(super) fn longest_substep<const D: usize>(
     (STABLE / omega_squared.sqrt()).min(TURN / turning.sqrt()).min(DAMPED / damping_rate)
 }
 
-/// The factor by which to change h after an error of `error` where `tolerance` is allowed, for an estimate of order h³.
-pub(super) fn growth(error: f64, tolerance: f64) -> f64 {
+/// The factor by which to change h after an error of `error` where `tolerance` is allowed, for an estimate that grows with
+/// h to the power `order`.
+pub(super) fn growth(error: f64, tolerance: f64, order: f64) -> f64 {
     // 0.9: aim a little low, a rejected substep costs a whole one. The bounds keep one odd estimate from mattering long.
-    (0.9 * libm::cbrt(tolerance / error)).clamp(0.2, 2.0)
+    (0.9 * libm::pow(tolerance / error, 1.0 / order)).clamp(0.2, 2.0)
 }

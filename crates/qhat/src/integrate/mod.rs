@@ -2,11 +2,15 @@
 //!
 //! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
 
+mod adaptive;
 mod control;
+mod dop853;
+mod dopri5;
 mod euler;
 mod projection;
 mod rattle;
 mod rk4;
+mod runge_kutta;
 mod symplectic_euler;
 
 use crate::error::StepError;
@@ -30,7 +34,7 @@ pub struct Workspace {
     qd: Vec<f64>,
     /// The q whose A the solver holds factored without ε; empty if that is not known.
     factored_at: Vec<f64>,
-    rk4: rk4::Stages,
+    stages: runge_kutta::Stages,
     rattle: rattle::Scratch,
 }
 
@@ -43,7 +47,7 @@ impl Workspace {
             q: vec![0.0; coordinates],
             qd: vec![0.0; coordinates],
             factored_at: Vec::new(),
-            rk4: rk4::Stages::new(coordinates),
+            stages: runge_kutta::Stages::new(coordinates, system.row_count()),
             rattle: rattle::Scratch::new(system),
         }
     }
@@ -94,7 +98,9 @@ pub(crate) fn step_for(
         Integrator::Euler => fixed::<D>(system, state, frame, workspace, euler::step::<D>),
         Integrator::SymplecticEuler => fixed::<D>(system, state, frame, workspace, symplectic_euler::step::<D>),
         Integrator::Rk4 => fixed::<D>(system, state, frame, workspace, rk4::step::<D>),
-        Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
+        Integrator::Rattle => adaptive::frame::<D>(&rattle::Rattle, system, state, settings, frame, workspace),
+        Integrator::Dopri5 => adaptive::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
+        Integrator::Dop853 => adaptive::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
     })
 }
 

@@ -14,25 +14,20 @@
 //! Fails where A(q) cannot follow the motion: the substep is halved, in the end with an error. Feedback is not used.
 //! Source: Andersen, RATTLE, J. Comput. Phys. 52 (1983); Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
+use super::Workspace;
+use super::adaptive::{Attempt, Method};
 use super::control;
 use super::projection::{add_impulse, attainable, worst_row};
-use super::{Workspace, check_finite};
 use crate::constraint::Jacobian;
-use crate::error::StepError;
 use crate::measure;
-use crate::multiplier::Equation;
 use crate::point::Motion;
-use crate::report::StepReport;
-use crate::settings::{Feedback, Settings};
-use crate::state::{Carry, State};
+use crate::settings::Settings;
+use crate::state::State;
 use crate::system::System;
 
 /// Newton's method with a kept matrix converges linearly, faster the shorter the substep; where this many iterations do not
 /// do, two halves cost less.
 const MAX_ITERATIONS: usize = 16;
-
-/// A substep this much shorter than the frame means that shortening it does not help.
-const SHORTEST: f64 = 1e-12;
 
 /// The difference of the multipliers estimates the local error up to a factor. With this one the default tolerance of 1e-4
 /// left energy errors of 1e-5 to 1e-3 after 2 s of chains, 60 s of pendulums and 5 s of nets.
@@ -72,124 +67,44 @@ impl Scratch {
     }
 }
 
-/// What one substep that succeeded says.
-struct Substep {
-    /// Error estimate relative to the extent of the system.
-    error: f64,
-    iterations: usize,
-}
+/// The method.
+pub(super) struct Rattle;
 
-/// Carries the state over one frame.
-pub(super) fn frame<const D: usize>(
-    system: &System,
-    state: &mut State,
-    settings: &Settings,
-    frame: f64,
-    workspace: &mut Workspace,
-) -> Result<StepReport, StepError> {
-    let mut report = StepReport { smallest_substep: frame, ..StepReport::default() };
-    let factorizations = workspace.equation.solver.factorizations;
-    let Carry { mut lambda, substep: mut proposed, .. } = begin::<D>(system, state, frame, workspace);
-    workspace.factored_at.clear();
-    let start = state.t;
-    let mut done = 0.0;
-    while done < frame {
+impl<const D: usize> Method<D> for Rattle {
+    fn estimate_order(&self) -> f64 {
+        3.0
+    }
+
+    fn longest(&self, system: &System, state: &State, lambda: &[f64], workspace: &mut Workspace) -> f64 {
+        let Workspace { equation, rattle: Scratch { rowsum, damping, .. }, .. } = workspace;
         let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        let Workspace { equation, rattle: scratch, .. } = workspace;
-        let longest =
-            control::longest_substep(system, equation, &lambda, motion, &mut scratch.rowsum, &mut scratch.damping);
-        let h = fit(proposed.min(longest), frame - done);
-        let outcome = substep::<D>(system, state, settings, h, &lambda, workspace);
-        let accepted = outcome.filter(|substep| substep.error <= 2.0 * settings.tolerance || substep.error.is_nan());
-        let Some(substep) = accepted else {
-            report.rejected += 1;
-            proposed = 0.5 * h;
-            if proposed < SHORTEST * frame {
-                state.carry = None;
-                return Err(failure(system, state, workspace));
-            }
-            return_to::<D>(system, state, &mut workspace.equation);
-            continue;
-        };
-        check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
-        proposed = h * control::growth(substep.error, settings.tolerance);
-        accept::<D>(system, state, h, workspace);
-        let Workspace { equation, rattle: scratch, .. } = workspace;
-        for (multiplier, nu) in lambda.iter_mut().zip(&scratch.nu) {
+        control::longest_substep(system, equation, lambda, motion, rowsum, damping)
+    }
+
+    fn attempt(
+        &self,
+        system: &System,
+        state: &State,
+        settings: &Settings,
+        h: f64,
+        lambda: &[f64],
+        workspace: &mut Workspace,
+    ) -> Option<Attempt> {
+        let (error, iterations) = substep::<D>(system, state, settings, h, lambda, workspace)?;
+        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
+        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
+        Some(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
+    }
+
+    fn multipliers(&self, h: f64, workspace: &Workspace, lambda: &mut [f64]) {
+        for (multiplier, nu) in lambda.iter_mut().zip(&workspace.rattle.nu) {
             *multiplier = 2.0 / h * nu;
         }
-        done = if h == frame - done { frame } else { done + h };
-        state.t = start + done;
-        report.substeps += 1;
-        report.iterations += substep.iterations;
-        report.smallest_substep = report.smallest_substep.min(h);
-        let drift = measure::drift(system, &equation.rows, Motion::<D> { q: &state.q, qd: &state.qd });
-        report.max_residual = report.max_residual.max(drift.residual);
-        report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
-        report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
-        if report.substeps >= settings.max_substeps && done < frame {
-            state.carry = None;
-            return Err(StepError::TooManySubsteps { time: state.t, max_substeps: settings.max_substeps });
-        }
-    }
-    for warning in workspace.equation.warnings(system) {
-        report.warn(warning);
-    }
-    let deficient = workspace.equation.solver.deficient;
-    state.carry = Some(Carry { lambda, substep: proposed, deficient });
-    workspace.factored_at.clone_from(&state.q);
-    report.factorizations = workspace.equation.solver.factorizations - factorizations;
-    report.energy = measure::energy(system, state);
-    Ok(report)
-}
-
-/// What the last frame carried over, or for a first frame λ from the equation itself. Leaves rows, forces and the factor
-/// of A at the state; a factor that is there already is kept.
-fn begin<const D: usize>(system: &System, state: &mut State, frame: f64, workspace: &mut Workspace) -> Carry {
-    match state.carry.take() {
-        Some(carry) => {
-            let is_factored = workspace.factored_at == state.q;
-            let equation = &mut workspace.equation;
-            // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
-            if is_factored && equation.solver.deficient == carry.deficient {
-                let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-                equation.apply_forces(system, motion);
-                equation.constrain(system, motion);
-            } else {
-                return_to::<D>(system, state, equation);
-                if carry.deficient {
-                    equation.solver.regularize(&system.matrix.pattern);
-                }
-            }
-            carry
-        }
-        None => {
-            let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
-            Carry { lambda: equation.lambda.clone(), substep: frame, deficient: equation.solver.deficient }
-        }
     }
 }
 
-/// Rows, forces and the factor of A at the state, wherever they are now.
-fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
-    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-    equation.apply_forces(system, motion);
-    equation.constrain(system, motion);
-    equation.factor::<D>(system, 0.0);
-}
-
-/// The whole of what remains, half of it, or h: so that no sliver is left for the end.
-fn fit(h: f64, remaining: f64) -> f64 {
-    if h >= remaining {
-        remaining
-    } else if 2.0 * h > remaining {
-        0.5 * remaining
-    } else {
-        h
-    }
-}
-
-/// Tries one substep from `state` into the workspace; `None` if the constraints were not met.
+/// Tries one substep from `state` into the workspace: the error estimate relative to the extent of the system and the
+/// number of Newton iterations, or `None` if the constraints were not met.
 fn substep<const D: usize>(
     system: &System,
     state: &State,
@@ -197,7 +112,7 @@ fn substep<const D: usize>(
     h: f64,
     lambda: &[f64],
     workspace: &mut Workspace,
-) -> Option<Substep> {
+) -> Option<(f64, usize)> {
     let Workspace { equation, q, qd, rattle: scratch, .. } = workspace;
     let W = &system.inverse_mass;
     let pattern = &system.matrix.pattern;
@@ -272,25 +187,5 @@ fn substep<const D: usize>(
         let forces = 0.5 * h * h * (equation.WQ[k] - scratch.WQ[k]);
         error = error.max((forces + h * scratch.kick[k] - scratch.push[k]).abs());
     }
-    Some(Substep { error: ERROR_SCALE * error / system.extent, iterations })
-}
-
-/// Makes the tried state the state.
-fn accept<const D: usize>(system: &System, state: &mut State, h: f64, workspace: &mut Workspace) {
-    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
-    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-    state.work.dissipation += 0.5 * h * (before + after);
-    std::mem::swap(&mut state.q, &mut workspace.q);
-    std::mem::swap(&mut state.qd, &mut workspace.qd);
-}
-
-fn failure(system: &System, state: &State, workspace: &Workspace) -> StepError {
-    let C = &workspace.equation.rows.C;
-    let (row, _) = worst_row(system, C);
-    match C.get(row) {
-        Some(&residual) => StepError::NotSatisfied { time: state.t, row: system.row_names[row].clone(), residual },
-        None => {
-            StepError::NotFinite { time: state.t, particle: system.particle_names.first().cloned().unwrap_or_default() }
-        }
-    }
+    Some((ERROR_SCALE * error / system.extent, iterations))
 }
