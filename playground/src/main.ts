@@ -2,5 +2,6 @@ import { mount } from 'svelte';
 import App from './App.svelte';
 import './style/base.css';
 import './style/controls.css';
+import './style/reading.css';
 
 mount(App, { target: document.getElementById('app')! });
