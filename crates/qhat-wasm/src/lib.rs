@@ -131,7 +131,7 @@ impl Simulation {
         Ok(convert::report(&report))
     }
 
-    /// Back to the start: state and forces; settings stay.
+    /// Back to where it started, with nothing held; controls stay as they are. Throws `StepError`.
     pub fn reset(&mut self) -> Result<(), JsValue> {
         self.inner.reset().map_err(|cause| error("StepError", cause))
     }

@@ -52,13 +52,11 @@ export class Run {
 
   /** Back to the start of the motion, under the controls as they are now. */
   reset(): void {
-    const controls = this.simulation.controls();
     this.stopped = null;
     this.report = null;
     try {
       this.simulation.reset();
       this.balance = this.simulation.energy().balance;
-      this.simulation.setControls(controls);
     } catch (error) {
       // a start that the integrator chosen since cannot make consistent
       if (!(error instanceof EngineError)) throw error;

@@ -3,7 +3,7 @@
 //! Stability: an explicit method needs h ω < 2. Geometric stiffness |λ_i| |∂²C_i/∂q²| and the stiffness of forces bound ω by
 //! Gershgorin's theorem, ω² ≤ max_p w_p Σ (row sum of |K| at particle p); for a chain under tension T that is 4 w T/L.
 //! Turning: √(γ_i/scale_i) is the rate at which row i turns [1/s]; a substep must not turn it far.
-//! Accuracy: the error estimate of a second-order method grows with h³.
+//! Accuracy: an error estimate grows with a power of h, h³ for RATTLE.
 
 use crate::constraint::Holds;
 use crate::force::Acts;

@@ -51,9 +51,7 @@ impl Workspace {
             rattle: rattle::Scratch::new(system),
         }
     }
-}
 
-impl Workspace {
     pub(crate) fn equation(&self) -> &Equation {
         &self.equation
     }

@@ -1,4 +1,4 @@
-//! The classical Runge–Kutta method: order 4, not symmetric.
+//! The classical Runge–Kutta method, as a tableau: order 4, not symmetric.
 //!
 //! Stable while h ω < 2.83. λ is exact at every stage, so C drifts only by the method's own error.
 //! Source: Kutta (1901).
