@@ -40,6 +40,7 @@ pub mod linalg;
 
 mod error;
 mod integrate;
+mod lanes;
 mod measure;
 mod multiplier;
 mod point;

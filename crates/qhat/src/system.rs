@@ -4,6 +4,7 @@
 use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
+use crate::lanes::Plan;
 use crate::multiplier::MatrixStructure;
 use crate::point::{Motion, block, minus, norm};
 use crate::settings::Feedback;
@@ -126,6 +127,8 @@ pub struct System {
     pub(crate) row_scale: Vec<f64>,
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
+    /// Where its chains lie in lanes, if it has nothing else.
+    pub(crate) plan: Option<Plan>,
     pub(crate) forces: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
@@ -292,6 +295,7 @@ impl System {
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
         self.matrix = MatrixStructure::new(&self.layout, &self.inverse_mass);
+        self.plan = Plan::new(self);
     }
 }
 
@@ -350,6 +354,7 @@ impl SystemBuilder {
             row_scale: Vec::new(),
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
+            plan: None,
             forces: self.forces,
             feedback: self.feedback,
             extent,

@@ -5,7 +5,7 @@
 //! power = −kd Σ v_i · v_i        [W]
 //! ```
 
-use super::{Acts, not_negative};
+use super::{Acts, Dependence, not_negative};
 use crate::point::{Motion, add, dot, scaled};
 use crate::system::ParticleId;
 
@@ -38,6 +38,10 @@ impl Acts for Drag {
                 bound(ParticleId(i), 0.0, self.coefficient);
             }
         }
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Drag(self.coefficient)
     }
 
     fn particles(&self) -> Vec<ParticleId> {

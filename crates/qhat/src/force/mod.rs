@@ -32,11 +32,25 @@ pub(crate) trait Acts {
     /// what limits the step of an explicit method.
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
 
+    /// What it changes with, while nothing but the motion goes on.
+    fn dependence(&self) -> Dependence;
+
     /// The particles this force names; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
+}
+
+/// What a force changes with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Dependence {
+    /// Nothing: it is the same at every motion.
+    Nothing,
+    /// −coefficient q̇ on every particle [N·s/m].
+    Drag(f64),
+    /// The positions and velocities of the particles it names.
+    Motion,
 }
 
 macro_rules! forces {
@@ -61,6 +75,9 @@ macro_rules! forces {
             }
             fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
                 match self { $(Force::$kind(force) => force.stiffness(motion, bound),)* }
+            }
+            fn dependence(&self) -> Dependence {
+                match self { $(Force::$kind(force) => force.dependence(),)* }
             }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }

@@ -8,7 +8,7 @@
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 
-use super::{Acts, finite, not_negative};
+use super::{Acts, Dependence, finite, not_negative};
 use crate::point::{Motion, add, dot, first, minus, scaled};
 use crate::system::ParticleId;
 
@@ -44,6 +44,10 @@ impl Acts for MouseSpring {
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         bound(self.particle, self.stiffness, self.damping);
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Motion
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -5,7 +5,7 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, finite};
+use super::{Acts, Dependence, finite};
 use crate::point::{Motion, add, dot, first};
 use crate::system::ParticleId;
 
@@ -32,6 +32,10 @@ impl Acts for PointForce {
     }
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Nothing
+    }
 
     fn particles(&self) -> Vec<ParticleId> {
         vec![self.particle]

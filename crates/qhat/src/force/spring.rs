@@ -10,7 +10,7 @@
 //! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.
 
-use super::{Acts, not_negative};
+use super::{Acts, Dependence, not_negative};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
 use crate::system::ParticleId;
 
@@ -74,6 +74,10 @@ impl Acts for Spring {
         let both_ends = 2.0 * self.stiffness.max(across);
         bound(self.a, both_ends, 2.0 * self.damping);
         bound(self.b, both_ends, 2.0 * self.damping);
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Motion
     }
 
     fn particles(&self) -> Vec<ParticleId> {

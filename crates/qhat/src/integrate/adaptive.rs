@@ -4,13 +4,13 @@ use super::control;
 use super::projection::worst_row;
 use super::{Workspace, check_finite};
 use crate::error::StepError;
-use crate::measure;
+use crate::measure::{self, Drift};
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::StepReport;
 use crate::settings::{Feedback, Settings};
 use crate::state::{Carry, State};
-use crate::system::System;
+use crate::system::{System, in_dimension};
 
 /// A substep this much shorter than the frame means that shortening it does not help.
 const SHORTEST: f64 = 1e-12;
@@ -19,29 +19,38 @@ const SHORTEST: f64 = 1e-12;
 /// and a substep that is a little too long costs less than two.
 pub(super) const MISSED: f64 = 2.0;
 
-/// One method of one substep.
-pub(super) trait Method<const D: usize> {
+/// One method on its way over one frame. It may keep the motion in arrays of its own between `begin` and `end`.
+pub(super) trait Method {
     /// The power of h with which the error estimate grows.
     fn estimate_order(&self) -> f64;
 
-    /// The longest substep worth trying [s]. Rows and λ are those of the state.
-    fn longest(&self, system: &System, state: &State, lambda: &[f64], workspace: &mut Workspace) -> f64;
+    /// The longest substep worth trying [s].
+    fn longest(&mut self, state: &State) -> f64;
 
-    /// Tries one substep from `state` into the workspace, rows, forces and factor at the new state; `None` if the
-    /// constraints were not met. `lambda` is what the last substep left, a first guess. What misses the tolerance need not be
-    /// finished.
-    fn attempt(
-        &self,
-        system: &System,
-        state: &State,
-        settings: &Settings,
-        h: f64,
-        lambda: &[f64],
-        workspace: &mut Workspace,
-    ) -> Option<Attempt>;
+    /// Tries one substep. What misses the tolerance need not be finished.
+    fn attempt(&mut self, state: &State, h: f64) -> Outcome;
 
-    /// λ to carry on from a substep that was kept.
-    fn multipliers(&self, h: f64, workspace: &Workspace, lambda: &mut [f64]);
+    /// Goes on from what was tried last.
+    fn keep(&mut self, state: &mut State, h: f64) -> Drift;
+
+    /// Goes back to where it was tried from.
+    fn turn_back(&mut self, state: &State);
+
+    /// Writes the motion to the state.
+    fn end(&mut self, state: &mut State);
+
+    /// Writes what was tried last to a state: to name what went wrong in it.
+    fn write_tried(&self, state: &mut State);
+}
+
+/// What became of one substep.
+pub(super) enum Outcome {
+    /// The constraints are met.
+    Met(Attempt),
+    /// They are not.
+    NotMet,
+    /// The method cannot go on from here, because rows depend on each other.
+    Singular,
 }
 
 /// What one substep that met the constraints says.
@@ -54,100 +63,151 @@ pub(super) struct Attempt {
     pub(super) dissipation: f64,
 }
 
-/// Carries the state over one frame.
-pub(super) fn frame<const D: usize>(
-    method: &impl Method<D>,
-    system: &System,
-    state: &mut State,
-    settings: &Settings,
-    frame: f64,
-    workspace: &mut Workspace,
-) -> Result<StepReport, StepError> {
-    let mut report = StepReport { smallest_substep: frame, ..StepReport::default() };
-    let factorizations = workspace.equation.solver.factorizations;
-    let Carry { mut lambda, substep: mut proposed, .. } = begin::<D>(system, state, frame, workspace);
-    workspace.factored_at.clear();
-    let start = state.t;
-    let mut done = 0.0;
-    while done < frame {
-        let longest = method.longest(system, state, &lambda, workspace);
-        let h = fit(proposed.min(longest), frame - done);
-        let outcome = method.attempt(system, state, settings, h, &lambda, workspace);
-        let order = method.estimate_order();
-        let growth = outcome.as_ref().map(|attempt| control::growth(attempt.error, settings.tolerance, order));
-        // An error that is not a number is not for a shorter substep to mend: it is reported below.
-        let kept = outcome.filter(|attempt| attempt.error.is_nan() || attempt.error <= MISSED * settings.tolerance);
-        let Some(attempt) = kept else {
-            report.rejected += 1;
-            proposed = h * growth.unwrap_or(0.5);
-            if proposed < SHORTEST * frame {
-                state.carry = None;
-                return Err(failure(system, state, workspace));
-            }
-            return_to::<D>(system, state, &mut workspace.equation);
-            continue;
-        };
-        check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
-        proposed = h * growth.unwrap_or(1.0);
-        method.multipliers(h, workspace, &mut lambda);
-        std::mem::swap(&mut state.q, &mut workspace.q);
-        std::mem::swap(&mut state.qd, &mut workspace.qd);
-        state.work.dissipation += attempt.dissipation;
-        done = if h == frame - done { frame } else { done + h };
-        state.t = start + done;
-        report.substeps += 1;
-        report.iterations += attempt.iterations;
-        report.smallest_substep = report.smallest_substep.min(h);
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        let drift = measure::drift(system, &workspace.equation.rows, motion);
-        report.max_residual = report.max_residual.max(drift.residual);
-        report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
-        report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
-        if report.substeps >= settings.max_substeps && done < frame {
-            state.carry = None;
-            return Err(StepError::TooManySubsteps { time: state.t, max_substeps: settings.max_substeps });
-        }
-    }
-    for warning in workspace.equation.warnings(system) {
-        report.warn(warning);
-    }
-    let deficient = workspace.equation.solver.deficient;
-    state.carry = Some(Carry { lambda, substep: proposed, deficient });
-    workspace.factored_at.clone_from(&state.q);
-    report.factorizations = workspace.equation.solver.factorizations - factorizations;
-    report.energy = measure::energy(system, state);
-    Ok(report)
+/// One frame: how far it has come, and what there is to report.
+pub(super) struct Frame<'a> {
+    pub(super) system: &'a System,
+    pub(super) settings: &'a Settings,
+    start: f64,
+    length: f64,
+    done: f64,
+    /// The substep to try next [s].
+    pub(super) proposed: f64,
+    pub(super) report: StepReport,
 }
 
-/// What the last frame carried over, or for a first frame λ from the equation itself. Leaves rows, forces and the factor
-/// of A at the state; a factor that is there already is kept.
-fn begin<const D: usize>(system: &System, state: &mut State, frame: f64, workspace: &mut Workspace) -> Carry {
-    match state.carry.take() {
-        Some(carry) => {
-            let is_factored = workspace.factored_at == state.q;
-            let equation = &mut workspace.equation;
-            // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
-            if is_factored && equation.solver.deficient == carry.deficient {
-                let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-                equation.apply_forces(system, motion);
-                equation.constrain(system, motion);
-            } else {
-                return_to::<D>(system, state, equation);
-                if carry.deficient {
-                    equation.solver.regularize(&system.matrix.pattern);
+impl<'a> Frame<'a> {
+    /// A frame of a length [s] that begins at a state.
+    pub(super) fn new(system: &'a System, settings: &'a Settings, state: &State, length: f64) -> Self {
+        let report = StepReport { smallest_substep: length, ..StepReport::default() };
+        let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
+        Frame { system, settings, start: state.t, length, done: 0.0, proposed, report }
+    }
+
+    /// Goes on to the end of the frame, or as far as the method can: whether it is the end. The state is up to date in any
+    /// case, t included.
+    pub(super) fn run(&mut self, method: &mut impl Method, state: &mut State) -> Result<bool, StepError> {
+        let outcome = self.substeps(method, state);
+        method.end(state);
+        outcome
+    }
+
+    fn substeps(&mut self, method: &mut impl Method, state: &mut State) -> Result<bool, StepError> {
+        while self.done < self.length {
+            let h = fit(self.proposed.min(method.longest(state)), self.length - self.done);
+            let attempt = match method.attempt(state, h) {
+                Outcome::Singular => return Ok(false),
+                Outcome::NotMet => None,
+                Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
+                Outcome::Met(attempt) => Some(attempt),
+            };
+            let order = method.estimate_order();
+            let growth = attempt.as_ref().map(|attempt| control::growth(attempt.error, self.settings.tolerance, order));
+            let Some(attempt) = attempt.filter(|attempt| attempt.error <= MISSED * self.settings.tolerance) else {
+                self.report.rejected += 1;
+                self.proposed = h * growth.unwrap_or(0.5);
+                if self.proposed < SHORTEST * self.length {
+                    return Err(self.not_satisfied(method, state));
                 }
+                method.turn_back(state);
+                continue;
+            };
+            self.proposed = h * growth.unwrap_or(1.0);
+            let drift = method.keep(state, h);
+            state.work.dissipation += attempt.dissipation;
+            self.done = if h == self.length - self.done { self.length } else { self.done + h };
+            state.t = self.start + self.done;
+            let report = &mut self.report;
+            report.substeps += 1;
+            report.iterations += attempt.iterations;
+            report.smallest_substep = report.smallest_substep.min(h);
+            report.max_residual = report.max_residual.max(drift.residual);
+            report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
+            report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
+            let max_substeps = self.settings.max_substeps;
+            if report.substeps >= max_substeps && self.done < self.length {
+                return Err(StepError::TooManySubsteps { time: state.t, max_substeps });
             }
-            carry
         }
-        None => {
-            let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
-            Carry { lambda: equation.lambda.clone(), substep: frame, deficient: equation.solver.deficient }
+        Ok(true)
+    }
+
+    /// Which particle of what was tried is lost: an error that is not a number is not for a shorter substep to mend.
+    fn not_finite(&self, method: &impl Method, state: &State) -> StepError {
+        let mut tried = state.clone();
+        method.write_tried(&mut tried);
+        let checked = in_dimension!(self.system.dimension, D => {
+            check_finite::<D>(self.system, state.t, &tried.q, &tried.qd)
+        });
+        // Sums of finite numbers may overflow, too; then no particle is to blame more than another.
+        let first = || self.system.particle_names.first().cloned().unwrap_or_default();
+        checked.err().unwrap_or_else(|| StepError::NotFinite { time: state.t, particle: first() })
+    }
+
+    /// Which row of what was tried is farthest off.
+    fn not_satisfied(&self, method: &impl Method, state: &State) -> StepError {
+        let mut tried = state.clone();
+        method.write_tried(&mut tried);
+        in_dimension!(self.system.dimension, D => {
+            let mut rows = self.system.empty_rows();
+            let constraints = self.system.constraints.iter().map(|named| &named.constraint);
+            rows.evaluate(constraints, Motion::<D> { q: &tried.q, qd: &tried.qd });
+            let (row, _) = worst_row(self.system, &rows.C);
+            match rows.C.get(row) {
+                Some(&residual) => {
+                    StepError::NotSatisfied { time: state.t, row: self.system.row_names[row].clone(), residual }
+                }
+                None => self.not_finite(method, state),
+            }
+        })
+    }
+
+    /// What a frame leaves: the report, and in the state what the next one goes on from. `general` is λ and the equation, where
+    /// the frame ended on the general path.
+    pub(super) fn finish(mut self, state: &mut State, general: Option<(Vec<f64>, &Equation)>) -> StepReport {
+        let (lambda, deficient) = match general {
+            Some((lambda, equation)) => {
+                for warning in equation.warnings(self.system) {
+                    self.report.warn(warning);
+                }
+                (lambda, equation.solver.deficient)
+            }
+            None => (Vec::new(), false),
+        };
+        state.carry = Some(Carry { lambda, substep: self.proposed, deficient });
+        self.report.energy = measure::energy(self.system, state);
+        self.report
+    }
+}
+
+/// λ at the state, from the last frame or for a first one from the equation itself. Leaves rows, forces and the factor of A
+/// at the state; a factor that is there already is kept.
+pub(super) fn begin<const D: usize>(
+    system: &System,
+    state: &State,
+    carry: Option<Carry>,
+    workspace: &mut Workspace,
+) -> Vec<f64> {
+    let Some(carry) = carry.filter(|carry| carry.lambda.len() == system.row_count()) else {
+        return workspace.solve::<D>(system, state, &Feedback::NONE).lambda.clone();
+    };
+    let is_factored = workspace.factored_at == state.q;
+    let equation = &mut workspace.equation;
+    // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
+    if is_factored && equation.solver.deficient == carry.deficient {
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        equation.apply_forces(system, motion);
+        equation.constrain(system, motion);
+    } else {
+        return_to::<D>(system, state, equation);
+        if carry.deficient {
+            equation.solver.regularize(&system.matrix.pattern);
         }
     }
+    carry.lambda
 }
 
 /// Rows, forces and the factor of A at the state, wherever they are now.
-fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
+pub(super) fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
     let motion = Motion::<D> { q: &state.q, qd: &state.qd };
     equation.apply_forces(system, motion);
     equation.constrain(system, motion);
@@ -162,16 +222,5 @@ fn fit(h: f64, remaining: f64) -> f64 {
         0.5 * remaining
     } else {
         h
-    }
-}
-
-fn failure(system: &System, state: &State, workspace: &Workspace) -> StepError {
-    let C = &workspace.equation.rows.C;
-    let (row, _) = worst_row(system, C);
-    match C.get(row) {
-        Some(&residual) => StepError::NotSatisfied { time: state.t, row: system.row_names[row].clone(), residual },
-        None => {
-            StepError::NotFinite { time: state.t, particle: system.particle_names.first().cloned().unwrap_or_default() }
-        }
     }
 }

@@ -4,13 +4,14 @@
 //! took 9752, one with a load of 1000 beads 870 against 10834.
 //! Source: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.5 and the code DOP853.
 
-use super::runge_kutta::{Pair, Tableau};
+use super::pair::Pair;
+use super::runge_kutta::Tableau;
 
 /// The pair: coefficients, and the weights whose combinations with the slopes estimate the error.
-pub(super) const DOP853: Pair<12> = Pair {
-    order: 8,
-    tableau: Tableau {
-        a: [
+pub(super) static DOP853: Pair = Pair::new(
+    8,
+    Tableau::new(
+        &[
             &[],
             &[0.05260015195876773],
             &[0.0197250569845379, 0.0591751709536137],
@@ -74,7 +75,7 @@ pub(super) const DOP853: Pair<12> = Pair {
                 0.6433927460157636,
             ],
         ],
-        b: [
+        &[
             0.054293734116568765,
             0.0,
             0.0,
@@ -88,8 +89,8 @@ pub(super) const DOP853: Pair<12> = Pair {
             0.20136540080403034,
             0.04471061572777259,
         ],
-    },
-    estimate: [
+    ),
+    &[
         0.01312004499419488,
         0.0,
         0.0,
@@ -103,7 +104,7 @@ pub(super) const DOP853: Pair<12> = Pair {
         0.08192320648511571,
         -0.022355307863886294,
     ],
-    coarse: Some([
+    Some(&[
         -0.18980075407240762,
         0.0,
         0.0,
@@ -117,4 +118,4 @@ pub(super) const DOP853: Pair<12> = Pair {
         0.20136540080403034,
         0.02265179219836082,
     ]),
-};
+);

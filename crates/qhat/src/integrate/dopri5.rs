@@ -4,13 +4,14 @@
 //! than DOP853 where the frame bounds the substep: a double pendulum at 1/60 s took 0.13 ms a simulated second against 0.23.
 //! Source: Dormand and Prince, A family of embedded Runge–Kutta formulae, J. Comput. Appl. Math. 6 (1980).
 
-use super::runge_kutta::{Pair, Tableau};
+use super::pair::Pair;
+use super::runge_kutta::Tableau;
 
 /// The pair: coefficients, and the weights b − b̂ whose combination with the slopes estimates the error.
-pub(super) const DOPRI5: Pair<7> = Pair {
-    order: 5,
-    tableau: Tableau {
-        a: [
+pub(super) static DOPRI5: Pair = Pair::new(
+    5,
+    Tableau::new(
+        &[
             &[],
             &[1.0 / 5.0],
             &[3.0 / 40.0, 9.0 / 40.0],
@@ -19,8 +20,8 @@ pub(super) const DOPRI5: Pair<7> = Pair {
             &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
             &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
         ],
-        b: [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0, 0.0],
-    },
-    estimate: [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0],
-    coarse: None,
-};
+        &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0, 0.0],
+    ),
+    &[71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0],
+    None,
+);

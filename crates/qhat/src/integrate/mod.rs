@@ -7,6 +7,8 @@ mod control;
 mod dop853;
 mod dopri5;
 mod euler;
+mod field;
+mod pair;
 mod projection;
 mod rattle;
 mod rk4;
@@ -14,6 +16,7 @@ mod runge_kutta;
 mod symplectic_euler;
 
 use crate::error::StepError;
+use crate::lanes::Lanes;
 use crate::measure::{self, Drift};
 use crate::multiplier::Equation;
 use crate::point::Motion;
@@ -34,7 +37,10 @@ pub struct Workspace {
     qd: Vec<f64>,
     /// The q whose A the solver holds factored without ε; empty if that is not known.
     factored_at: Vec<f64>,
+    delta: Vec<f64>,
     stages: runge_kutta::Stages,
+    /// Made when a method first goes in lanes.
+    lanes: Option<Lanes>,
     rattle: rattle::Scratch,
 }
 
@@ -47,7 +53,9 @@ impl Workspace {
             q: vec![0.0; coordinates],
             qd: vec![0.0; coordinates],
             factored_at: Vec::new(),
-            stages: runge_kutta::Stages::new(coordinates, system.row_count()),
+            delta: vec![0.0; system.row_count()],
+            stages: runge_kutta::Stages::default(),
+            lanes: None,
             rattle: rattle::Scratch::new(system),
         }
     }
@@ -96,9 +104,9 @@ pub(crate) fn step_for(
         Integrator::Euler => fixed::<D>(system, state, frame, workspace, euler::step::<D>),
         Integrator::SymplecticEuler => fixed::<D>(system, state, frame, workspace, symplectic_euler::step::<D>),
         Integrator::Rk4 => fixed::<D>(system, state, frame, workspace, rk4::step::<D>),
-        Integrator::Rattle => adaptive::frame::<D>(&rattle::Rattle, system, state, settings, frame, workspace),
-        Integrator::Dopri5 => adaptive::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
-        Integrator::Dop853 => adaptive::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
+        Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
+        Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
+        Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
     })
 }
 
@@ -118,6 +126,7 @@ pub fn project(
 }
 
 /// What a fixed-step method says of the step it wrote to the workspace [J].
+#[derive(Clone, Copy, Debug, Default)]
 struct StepWork {
     dissipation: f64,
     stabilization: f64,

@@ -67,7 +67,7 @@ fn positions<const D: usize>(
     let mut start = q.to_vec();
     for iteration in 0..MAX_ITERATIONS {
         let off = worst_row(system, &equation.rows.C).1;
-        if off <= attainable(system, settings, q) {
+        if off <= attainable(system, settings, largest(q)) {
             return Ok((before, iteration));
         }
         equation.factor::<D>(system, 0.0);
@@ -90,7 +90,7 @@ fn positions<const D: usize>(
     }
     let (row, _) = worst_row(system, &equation.rows.C);
     let residual = equation.rows.C.get(row).copied().unwrap_or(0.0);
-    if worst_row(system, &equation.rows.C).1 <= attainable(system, settings, q) {
+    if worst_row(system, &equation.rows.C).1 <= attainable(system, settings, largest(q)) {
         return Ok((before, MAX_ITERATIONS));
     }
     Err(StepError::NotSatisfied { time: t, row: system.row_names[row].clone(), residual })
@@ -140,11 +140,15 @@ pub(super) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
 }
 
 /// Where to stop: half the relative tolerance asked for, so that what is measured afterwards keeps the promise after
-/// rounding; or what the roundoff of the coordinates allows, where that is more.
-pub(super) fn attainable(system: &System, settings: &Settings, q: &[f64]) -> f64 {
-    let farthest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+/// rounding; or what the roundoff of the coordinates allows, where that is more. `farthest` is max |q| [m].
+pub(super) fn attainable(system: &System, settings: &Settings, farthest: f64) -> f64 {
     // A coordinate is rounded by ε|q|; a difference of two of them and its square root add a few more.
     (0.5 * settings.constraint_tolerance).max(4.0 * f64::EPSILON * farthest / system.extent)
+}
+
+/// max |x|.
+pub(super) fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 fn farthest<const D: usize>(a: &[f64], b: &[f64]) -> f64 {

@@ -15,12 +15,14 @@
 //! Source: Andersen, RATTLE, J. Comput. Phys. 52 (1983); Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
 use super::Workspace;
-use super::adaptive::{Attempt, Method};
+use super::adaptive::{self, Attempt, Frame, Method, Outcome};
 use super::control;
-use super::projection::{add_impulse, attainable, worst_row};
+use super::projection::{add_impulse, attainable, largest, worst_row};
 use crate::constraint::Jacobian;
-use crate::measure;
+use crate::error::StepError;
+use crate::measure::{self, Drift};
 use crate::point::Motion;
+use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
@@ -67,39 +69,75 @@ impl Scratch {
     }
 }
 
-/// The method.
-pub(super) struct Rattle;
+/// The method on its way over one frame.
+struct Run<'a, const D: usize> {
+    system: &'a System,
+    settings: &'a Settings,
+    workspace: &'a mut Workspace,
+    /// λ of the substep before, the first guess of the next.
+    lambda: Vec<f64>,
+}
 
-impl<const D: usize> Method<D> for Rattle {
+/// Carries the state over one frame.
+pub(super) fn frame<const D: usize>(
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    length: f64,
+    workspace: &mut Workspace,
+) -> Result<StepReport, StepError> {
+    let factorizations = workspace.equation.solver.factorizations;
+    let mut frame = Frame::new(system, settings, state, length);
+    let carry = state.carry.take();
+    let lambda = adaptive::begin::<D>(system, state, carry, workspace);
+    workspace.factored_at.clear();
+    let mut run = Run::<D> { system, settings, workspace, lambda };
+    frame.run(&mut run, state)?;
+    let Run { workspace, lambda, .. } = run;
+    workspace.factored_at.clone_from(&state.q);
+    frame.report.factorizations = workspace.equation.solver.factorizations - factorizations;
+    Ok(frame.finish(state, Some((lambda, &workspace.equation))))
+}
+
+impl<const D: usize> Method for Run<'_, D> {
     fn estimate_order(&self) -> f64 {
         3.0
     }
 
-    fn longest(&self, system: &System, state: &State, lambda: &[f64], workspace: &mut Workspace) -> f64 {
-        let Workspace { equation, rattle: Scratch { rowsum, damping, .. }, .. } = workspace;
+    fn longest(&mut self, state: &State) -> f64 {
+        let Workspace { equation, rattle: Scratch { rowsum, damping, .. }, .. } = &mut *self.workspace;
         let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        control::longest_substep(system, equation, lambda, motion, rowsum, damping)
+        control::longest_substep(self.system, equation, &self.lambda, motion, rowsum, damping)
     }
 
-    fn attempt(
-        &self,
-        system: &System,
-        state: &State,
-        settings: &Settings,
-        h: f64,
-        lambda: &[f64],
-        workspace: &mut Workspace,
-    ) -> Option<Attempt> {
-        let (error, iterations) = substep::<D>(system, state, settings, h, lambda, workspace)?;
+    fn attempt(&mut self, state: &State, h: f64) -> Outcome {
+        let Run { system, settings, workspace, lambda } = self;
+        let Some((error, iterations)) = substep::<D>(system, state, settings, h, lambda, workspace) else {
+            return Outcome::NotMet;
+        };
         let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
         let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-        Some(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
+        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
     }
 
-    fn multipliers(&self, h: f64, workspace: &Workspace, lambda: &mut [f64]) {
-        for (multiplier, nu) in lambda.iter_mut().zip(&workspace.rattle.nu) {
+    fn keep(&mut self, state: &mut State, h: f64) -> Drift {
+        for (multiplier, nu) in self.lambda.iter_mut().zip(&self.workspace.rattle.nu) {
             *multiplier = 2.0 / h * nu;
         }
+        std::mem::swap(&mut state.q, &mut self.workspace.q);
+        std::mem::swap(&mut state.qd, &mut self.workspace.qd);
+        measure::drift(self.system, &self.workspace.equation.rows, Motion::<D> { q: &state.q, qd: &state.qd })
+    }
+
+    fn turn_back(&mut self, state: &State) {
+        adaptive::return_to::<D>(self.system, state, &mut self.workspace.equation);
+    }
+
+    fn end(&mut self, _: &mut State) {}
+
+    fn write_tried(&self, state: &mut State) {
+        state.q.copy_from_slice(&self.workspace.q);
+        state.qd.copy_from_slice(&self.workspace.qd);
     }
 }
 
@@ -135,7 +173,7 @@ fn substep<const D: usize>(
     loop {
         equation.constrain(system, Motion::<D> { q, qd });
         let off = worst_row(system, &equation.rows.C).1;
-        if iterations > 0 && off <= attainable(system, settings, q) {
+        if iterations > 0 && off <= attainable(system, settings, largest(q)) {
             break;
         }
         // Convergence slower than this will not arrive in time.

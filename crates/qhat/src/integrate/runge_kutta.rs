@@ -5,209 +5,269 @@
 //! q'  = q + h Σ b_i q̇_i,          q̇'  = q̇ + h Σ b_i k_i
 //! ```
 //!
+//! The q̇_j are combinations of k themselves, so only the k are kept (Nyström's arrangement of the same method):
+//!
+//! ```text
+//! q_i = q + h c_i q̇ + h² Σ_l (A²)_il k_l,   q' = q + h q̇ + h² Σ_l (bᵀA)_l k_l,   c_i = Σ_j a_ij
+//! ```
+//!
 //! A pair adds weights e_i that estimate the local error, e = h Σ e_i (q̇_i, k_i), and is carried in substeps of its own
 //! choosing with q' brought onto C = 0 and q̇' onto Ċ = 0 after each. That changes nothing of the order: q' misses C = 0 by
 //! no more than the method's own error.
 
-use super::adaptive::{Attempt, MISSED, Method};
-use super::projection::{add_impulse, attainable, worst_row};
-use super::{StepWork, Workspace};
-use crate::measure;
-use crate::multiplier::Equation;
-use crate::point::Motion;
-use crate::settings::{Feedback, Settings};
-use crate::state::State;
-use crate::system::System;
+use super::StepWork;
+use super::field::{Field, Power};
+use crate::lanes::{F8, V, vector_unit};
+use pulp::{Simd, WithSimd};
 
 /// Most stages of any method here.
-const STAGES: usize = 12;
+pub(super) const STAGES: usize = 12;
 
-/// Newton's method with the factor of the last stage gains two to four digits an iteration on what is a small correction.
-const MAX_ITERATIONS: usize = 8;
-
-/// A speed that crosses less than this part of the system's extent in one substep counts as rest.
-const AT_REST: f64 = 1e-3;
-
-/// a (row i has i entries) and b of a method with S stages.
-pub(super) struct Tableau<const S: usize> {
-    pub(super) a: [&'static [f64]; S],
-    pub(super) b: [f64; S],
+/// One combination of the slopes: q + h c q̇ + h² Σ position_l k_l and q̇ + h Σ velocity_l k_l.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Combination {
+    c: f64,
+    position: [f64; STAGES],
+    velocity: [f64; STAGES],
 }
 
-/// A method with an error estimate.
-pub(super) struct Pair<const S: usize> {
-    pub(super) order: u32,
-    pub(super) tableau: Tableau<S>,
-    /// e.
-    pub(super) estimate: [f64; S],
-    /// A second, coarser estimate; together |e|²/√(|e|² + 0.01 |e_coarse|²).
-    pub(super) coarse: Option<[f64; S]>,
+/// A method: where each stage lies, and where the step ends.
+#[derive(Debug)]
+pub(super) struct Tableau {
+    stages: usize,
+    a: [[f64; STAGES]; STAGES],
+    at: [Combination; STAGES],
+    end: Combination,
 }
 
-/// The motion at a stage, and the slopes of all of them.
-#[derive(Clone, Debug)]
+impl Tableau {
+    /// From a, whose row i has i entries, and b.
+    pub(super) const fn new(rows: &[&[f64]], b: &[f64]) -> Self {
+        let mut a = [[0.0; STAGES]; STAGES];
+        let mut i = 0;
+        while i < rows.len() {
+            a[i] = padded(rows[i]);
+            i += 1;
+        }
+        let end = combination(&a, padded(b));
+        let mut at = [end; STAGES];
+        let mut i = 0;
+        while i < rows.len() {
+            at[i] = combination(&a, a[i]);
+            i += 1;
+        }
+        Tableau { stages: rows.len(), a, at, end }
+    }
+
+    /// The combination with weights e: Σ e_i q̇_i and Σ e_i k_i, over h and with q left out.
+    pub(super) const fn combination(&self, e: &[f64]) -> Combination {
+        combination(&self.a, padded(e))
+    }
+}
+
+const fn padded(weights: &[f64]) -> [f64; STAGES] {
+    let mut padded = [0.0; STAGES];
+    let mut j = 0;
+    while j < weights.len() {
+        padded[j] = weights[j];
+        j += 1;
+    }
+    padded
+}
+
+const fn combination(a: &[[f64; STAGES]; STAGES], weights: [f64; STAGES]) -> Combination {
+    let mut c = 0.0;
+    let mut position = [0.0; STAGES];
+    let mut j = 0;
+    while j < STAGES {
+        c += weights[j];
+        let mut l = 0;
+        while l < j {
+            position[l] += weights[j] * a[j][l];
+            l += 1;
+        }
+        j += 1;
+    }
+    Combination { c, position, velocity: weights }
+}
+
+/// A motion, the one that is tried from it, and the stages between.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Stages {
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    velocity: Vec<Vec<f64>>,
-    slope: Vec<Vec<f64>>,
-    rate: Vec<f64>,
-    delta: Vec<f64>,
+    pub(super) q: Vec<F8>,
+    pub(super) qd: Vec<F8>,
+    pub(super) next_q: Vec<F8>,
+    pub(super) next_qd: Vec<F8>,
+    stage_q: Vec<F8>,
+    stage_qd: Vec<F8>,
+    slope: Vec<Vec<F8>>,
+    power: [Power; STAGES],
+    /// Whether the first slope is that of the motion at hand.
+    pub(super) is_first_known: bool,
 }
 
 impl Stages {
-    pub(super) fn new(coordinates: usize, rows: usize) -> Self {
-        let arrays = || vec![vec![0.0; coordinates]; STAGES];
+    /// For so many blocks of eight numbers.
+    pub(super) fn new(blocks: usize) -> Self {
+        let array = || vec![F8::ZERO; blocks];
         Stages {
-            q: vec![0.0; coordinates],
-            qd: vec![0.0; coordinates],
-            velocity: arrays(),
-            slope: arrays(),
-            rate: vec![0.0; rows],
-            delta: vec![0.0; rows],
+            q: array(),
+            qd: array(),
+            next_q: array(),
+            next_qd: array(),
+            stage_q: array(),
+            stage_qd: array(),
+            slope: vec![array(); STAGES],
+            power: [Power::default(); STAGES],
+            is_first_known: false,
         }
+    }
+
+    /// The same arrays for another number of blocks; nothing if it is the same.
+    pub(super) fn resize(&mut self, blocks: usize) {
+        if self.q.len() != blocks || self.slope.is_empty() {
+            *self = Stages::new(blocks);
+        }
+        self.is_first_known = false;
+    }
+
+    /// What was tried becomes the motion at hand.
+    pub(super) fn accept(&mut self) {
+        std::mem::swap(&mut self.q, &mut self.next_q);
+        std::mem::swap(&mut self.qd, &mut self.next_qd);
+        self.is_first_known = false;
     }
 }
 
-/// One step of length h from `state` into `workspace.q`, `workspace.qd`; `is_factored` says that the factor at the state is
-/// at hand.
-pub(super) fn advance<const D: usize, const S: usize>(
-    tableau: &Tableau<S>,
-    system: &System,
-    state: &State,
-    h: f64,
-    feedback: &Feedback,
-    is_factored: bool,
-    workspace: &mut Workspace,
-) -> StepWork {
-    let Workspace { equation, q, qd, stages, .. } = workspace;
+/// Tries one step of length h; `None` if the field cannot tell a slope.
+pub(super) fn advance<F: Field>(tableau: &Tableau, field: &mut F, stages: &mut Stages, h: f64) -> Option<StepWork> {
+    let Stages { q, qd, next_q, next_qd, stage_q, stage_qd, slope, power, is_first_known } = stages;
+    if !*is_first_known {
+        power[0] = field.accelerate(q, qd, &mut slope[0])?;
+        *is_first_known = true;
+    }
+    for i in 1..tableau.stages {
+        let (known, rest) = slope.split_at_mut(i);
+        let weights = &tableau.at[i];
+        Combine { weights, h, q, qd, slope: known, out_q: stage_q, out_qd: stage_qd }.write();
+        power[i] = field.accelerate(stage_q, stage_qd, &mut rest[0])?;
+    }
+    Combine { weights: &tableau.end, h, q, qd, slope, out_q: next_q, out_qd: next_qd }.write();
     let mut work = StepWork { dissipation: 0.0, stabilization: 0.0 };
-    for i in 0..S {
-        combine(&state.q, h, tableau.a[i], &stages.velocity, &mut stages.q);
-        combine(&state.qd, h, tableau.a[i], &stages.slope, &mut stages.qd);
-        let motion = Motion::<D> { q: &stages.q, qd: &stages.qd };
-        equation.solve(system, motion, feedback, is_factored && i == 0);
-        if tableau.b[i] != 0.0 {
-            let power: f64 = equation.Q_hat.iter().zip(&stages.qd).map(|(force, velocity)| force * velocity).sum();
-            work.dissipation += tableau.b[i] * h * measure::dissipation(system, motion);
-            work.stabilization += tableau.b[i] * h * power;
-        }
-        stages.velocity[i].copy_from_slice(&stages.qd);
-        stages.slope[i].copy_from_slice(&equation.qdd);
+    for (weight, power) in tableau.end.velocity.iter().zip(power) {
+        // Beyond the stages in use the power is that of another method; its weight is zero.
+        work.dissipation += weight * h * power.dissipation;
+        work.stabilization += weight * h * power.stabilization;
     }
-    combine(&state.q, h, &tableau.b, &stages.velocity, q);
-    combine(&state.qd, h, &tableau.b, &stages.slope, qd);
-    work
+    Some(work)
 }
 
-/// out = y + h Σ a_j k_j.
-fn combine(y: &[f64], h: f64, a: &[f64], k: &[Vec<f64>], out: &mut [f64]) {
-    out.fill(0.0);
-    for (weight, slope) in a.iter().zip(k) {
-        if *weight != 0.0 {
-            for (sum, slope) in out.iter_mut().zip(slope) {
-                *sum += weight * slope;
+/// Writes the motion at one combination of the slopes.
+struct Combine<'a> {
+    weights: &'a Combination,
+    h: f64,
+    q: &'a [F8],
+    qd: &'a [F8],
+    slope: &'a [Vec<F8>],
+    out_q: &'a mut [F8],
+    out_qd: &'a mut [F8],
+}
+
+impl WithSimd for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        // Most tableaux have many zeros; what is left is gathered.
+        let mut terms: [Term<'_>; STAGES] = [(&[], 0.0, 0.0); STAGES];
+        let mut count = 0;
+        for (j, slope) in self.slope.iter().enumerate() {
+            let (position, velocity) = (self.weights.position[j], self.weights.velocity[j]);
+            if position != 0.0 || velocity != 0.0 {
+                terms[count] = (slope, self.h * self.h * position, self.h * velocity);
+                count += 1;
             }
         }
-    }
-    for (sum, y) in out.iter_mut().zip(y) {
-        *sum = y + h * *sum;
-    }
-}
-
-impl<const D: usize, const S: usize> Method<D> for Pair<S> {
-    fn estimate_order(&self) -> f64 {
-        f64::from(self.order)
-    }
-
-    fn longest(&self, _: &System, _: &State, _: &[f64], _: &mut Workspace) -> f64 {
-        f64::INFINITY
-    }
-
-    fn attempt(
-        &self,
-        system: &System,
-        state: &State,
-        settings: &Settings,
-        h: f64,
-        _: &[f64],
-        workspace: &mut Workspace,
-    ) -> Option<Attempt> {
-        let work = advance::<D, S>(&self.tableau, system, state, h, &Feedback::NONE, true, workspace);
-        let error = self.error(system, h, workspace);
-        if error > MISSED * settings.tolerance {
-            return Some(Attempt { error, iterations: 0, dissipation: 0.0 });
-        }
-        let Workspace { equation, q, qd, stages, .. } = workspace;
-        let iterations = positions::<D>(system, settings, equation, q, qd, &mut stages.delta)?;
-        equation.factor::<D>(system, 0.0);
-        equation.rows.J.multiply::<D>(qd, &mut stages.rate);
-        equation.solver.solve(&system.matrix.pattern, &stages.rate, &mut stages.delta);
-        add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &stages.delta, -1.0, qd);
-        equation.constrain(system, Motion::<D> { q, qd });
-        Some(Attempt { error, iterations, dissipation: work.dissipation })
-    }
-
-    fn multipliers(&self, _: f64, workspace: &Workspace, lambda: &mut [f64]) {
-        lambda.copy_from_slice(&workspace.equation.lambda);
-    }
-}
-
-impl<const S: usize> Pair<S> {
-    /// The estimate, positions relative to the extent and velocities to the fastest, whichever is larger.
-    fn error(&self, system: &System, h: f64, workspace: &Workspace) -> f64 {
-        let Workspace { qd, stages, .. } = workspace;
-        let fastest = qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        // What is at rest but for roundoff has no speed to compare with.
-        let speed = fastest.max(AT_REST * system.extent / h);
-        let mut largest = 0.0_f64;
-        for (k, scale) in [(&stages.velocity, system.extent), (&stages.slope, speed)] {
-            let (fine, coarse) = (norm(&self.estimate, k), self.coarse.map(|weights| norm(&weights, k)));
-            let estimate = match coarse {
-                Some(coarse) if fine > 0.0 => fine * fine / (fine * fine + 0.01 * coarse * coarse).sqrt(),
-                _ => fine,
+        // With their number known, the loop over them is unrolled.
+        macro_rules! of {
+            ($($n:literal)*) => {
+                match count {
+                    $($n => self.sum::<S, $n>(simd, std::array::from_fn(|j| terms[j])),)*
+                    _ => self.sum::<S, STAGES>(simd, terms),
+                }
             };
-            largest = largest.max(h * estimate / scale);
         }
-        largest
+        of!(0 1 2 3 4 5 6 7 8 9 10 11)
     }
 }
 
-/// Root mean square of Σ e_i k_i.
-fn norm(e: &[f64], k: &[Vec<f64>]) -> f64 {
-    let coordinates = k[0].len();
-    let mut sum = 0.0;
-    for c in 0..coordinates {
-        let mut combination = 0.0;
-        for (weight, slope) in e.iter().zip(k) {
-            combination += weight * slope[c];
-        }
-        sum += combination * combination;
+/// A slope with its weights in positions and in velocities.
+type Term<'a> = (&'a [F8], f64, f64);
+
+impl Combine<'_> {
+    #[inline(never)]
+    fn write(self) {
+        vector_unit().dispatch(self);
     }
-    (sum / coordinates.max(1) as f64).sqrt()
+
+    #[inline(always)]
+    fn sum<S: Simd, const N: usize>(self, simd: S, terms: [Term<'_>; N]) {
+        let blocks = self.q.len();
+        let terms = terms.map(|(slope, position, velocity)| (&slope[..blocks], position, velocity));
+        let (qd, out_q, out_qd) = (&self.qd[..blocks], &mut self.out_q[..blocks], &mut self.out_qd[..blocks]);
+        let hc = self.h * self.weights.c;
+        for k in 0..blocks {
+            let v = V::load(simd, &qd[k]);
+            let (mut position, mut velocity) = (hc * v, V::splat(simd, 0.0));
+            for (slope, in_position, in_velocity) in terms {
+                let slope = V::load(simd, &slope[k]);
+                position = position + in_position * slope;
+                velocity = velocity + in_velocity * slope;
+            }
+            (V::load(simd, &self.q[k]) + position).store(&mut out_q[k]);
+            (v + velocity).store(&mut out_qd[k]);
+        }
+    }
 }
 
-/// Brings q onto C = 0 with the factor of the last stage; the number of iterations, or `None` if it does not converge.
-/// Leaves the rows at q.
-fn positions<const D: usize>(
-    system: &System,
-    settings: &Settings,
-    equation: &mut Equation,
-    q: &mut [f64],
-    qd: &[f64],
-    delta: &mut [f64],
-) -> Option<usize> {
-    for iteration in 0..=MAX_ITERATIONS {
-        equation.constrain(system, Motion::<D> { q, qd });
-        let off = worst_row(system, &equation.rows.C).1;
-        if off <= attainable(system, settings, q) {
-            return Some(iteration);
+/// Σ |e|² of positions and of velocities for two estimates at once, each over the coordinates that count.
+pub(super) struct Squares<'a, F> {
+    pub(super) estimates: [&'a Combination; 2],
+    pub(super) field: &'a F,
+    pub(super) stages: &'a Stages,
+    pub(super) h: f64,
+}
+
+impl<F: Field> WithSimd for Squares<'_, F> {
+    type Output = [f64; 4];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 4] {
+        let Squares { estimates: [fine, coarse], field, stages: Stages { qd, slope, .. }, h } = self;
+        let mut terms: [(&[F8], [f64; 4]); STAGES] = [(&[], [0.0; 4]); STAGES];
+        let mut count = 0;
+        for (j, slope) in slope.iter().enumerate() {
+            let weights = [h * fine.position[j], fine.velocity[j], h * coarse.position[j], coarse.velocity[j]];
+            if weights != [0.0; 4] {
+                terms[count] = (&slope[..qd.len()], weights);
+                count += 1;
+            }
         }
-        if off.is_infinite() {
-            return None;
+        let mut sums = [V::splat(simd, 0.0); 4];
+        for k in 0..qd.len() {
+            let v = V::load(simd, &qd[k]);
+            let mut e = [fine.c * v, V::splat(simd, 0.0), coarse.c * v, V::splat(simd, 0.0)];
+            for (slope, weights) in &terms[..count] {
+                let slope = V::load(simd, &slope[k]);
+                for (e, weight) in e.iter_mut().zip(weights) {
+                    *e = *e + *weight * slope;
+                }
+            }
+            let counted = V::load(simd, &field.counted(k));
+            for (sum, e) in sums.iter_mut().zip(e) {
+                *sum = *sum + counted * (e * e);
+            }
         }
-        equation.solver.solve(&system.matrix.pattern, &equation.rows.C, delta);
-        add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, q);
+        sums.map(V::stored).map(F8::sum)
     }
-    None
 }

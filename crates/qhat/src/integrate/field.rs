@@ -1,0 +1,181 @@
+//! What a Runge–Kutta method integrates: q̈ as a function of q and q̇, and the way back onto the constraints.
+//!
+//! Positions and velocities stand in blocks of eight numbers, in an order of the field's own: eight stretches of chain side by
+//! side, or the user's order filled up with zeros. The method adds and scales them without knowing which.
+
+use super::Workspace;
+use super::projection::{add_impulse, attainable, largest, worst_row};
+use crate::lanes::{F8, LANES, Lanes, Largest, Plan, Projected, vector_unit};
+use crate::measure::{self, Drift};
+use crate::point::Motion;
+use crate::settings::{Feedback, Settings};
+use crate::state::State;
+use crate::system::System;
+
+/// Newton's method with the factor of the last stage gains two to four digits an iteration on what is a small correction.
+const MAX_ITERATIONS: usize = 8;
+
+/// Power of what no potential accounts for [W].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Power {
+    pub(super) dissipation: f64,
+    pub(super) stabilization: f64,
+}
+
+/// q̈(q, q̇) in an order of its own.
+pub(super) trait Field {
+    /// How many blocks of eight numbers q has.
+    fn blocks(&self) -> usize;
+
+    /// Lays the state out.
+    fn begin(&mut self, state: &State, q: &mut [F8], qd: &mut [F8]);
+
+    /// Writes it back.
+    fn end(&self, q: &[F8], qd: &[F8], state: &mut State);
+
+    /// Writes q̈; `None` where the field cannot tell, because rows depend on each other.
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power>;
+
+    /// Brings q onto C = 0 and q̇ onto Ċ = 0: the number of iterations.
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected;
+
+    /// What is left of C = 0 and Ċ = 0, of what was projected last.
+    fn drift(&self, q: &[F8], qd: &[F8]) -> Drift;
+
+    /// What was projected last is given up; the motion before it will be asked for again.
+    fn turn_back(&mut self);
+
+    /// 1 where block k of the coordinates is to be counted, 0 in copies.
+    fn counted(&self, k: usize) -> F8;
+}
+
+/// Any system, in the user's order, by the general path.
+pub(super) struct Rows<'a, const D: usize> {
+    pub(super) system: &'a System,
+    pub(super) workspace: &'a mut Workspace,
+    pub(super) feedback: Feedback,
+    /// Whether the factor at hand is that of the motion that will be asked for next.
+    pub(super) is_factored: bool,
+}
+
+fn pack(flat: &[f64], blocks: &mut [F8]) {
+    for (chunk, block) in flat.chunks(LANES).zip(blocks) {
+        block.0[..chunk.len()].copy_from_slice(chunk);
+    }
+}
+
+pub(super) fn unpack(blocks: &[F8], flat: &mut [f64]) {
+    for (chunk, block) in flat.chunks_mut(LANES).zip(blocks) {
+        chunk.copy_from_slice(&block.0[..chunk.len()]);
+    }
+}
+
+impl<const D: usize> Field for Rows<'_, D> {
+    fn blocks(&self) -> usize {
+        self.system.coordinate_count().div_ceil(LANES)
+    }
+
+    fn begin(&mut self, state: &State, q: &mut [F8], qd: &mut [F8]) {
+        pack(&state.q, q);
+        pack(&state.qd, qd);
+    }
+
+    fn end(&self, q: &[F8], qd: &[F8], state: &mut State) {
+        unpack(q, &mut state.q);
+        unpack(qd, &mut state.qd);
+    }
+
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power> {
+        let Workspace { equation, q: flat_q, qd: flat_qd, .. } = &mut *self.workspace;
+        unpack(q, flat_q);
+        unpack(qd, flat_qd);
+        let motion = Motion::<D> { q: flat_q, qd: flat_qd };
+        equation.solve(self.system, motion, &self.feedback, self.is_factored);
+        self.is_factored = false;
+        pack(&equation.qdd, qdd);
+        let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
+        Some(Power { dissipation: measure::dissipation(self.system, motion), stabilization: constraint_power.sum() })
+    }
+
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected {
+        let Workspace { equation, q: flat_q, qd: flat_qd, delta, .. } = &mut *self.workspace;
+        let (system, pattern) = (self.system, &self.system.matrix.pattern);
+        unpack(q, flat_q);
+        unpack(qd, flat_qd);
+        for iteration in 0..=MAX_ITERATIONS {
+            equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
+            let off = worst_row(system, &equation.rows.C).1;
+            if off <= attainable(system, settings, largest(flat_q)) {
+                equation.factor::<D>(system, 0.0);
+                equation.rows.J.multiply::<D>(flat_qd, &mut equation.b.sum);
+                equation.solver.solve(pattern, &equation.b.sum, delta);
+                add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
+                equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
+                pack(flat_q, q);
+                pack(flat_qd, qd);
+                self.is_factored = true;
+                return Projected::Met(iteration);
+            }
+            if off.is_infinite() {
+                break;
+            }
+            equation.solver.solve(pattern, &equation.rows.C, delta);
+            add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_q);
+        }
+        Projected::NotMet
+    }
+
+    fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
+        let Workspace { equation, q, qd, .. } = &*self.workspace;
+        measure::drift(self.system, &equation.rows, Motion::<D> { q, qd })
+    }
+
+    fn turn_back(&mut self) {
+        self.is_factored = false;
+    }
+
+    fn counted(&self, _: usize) -> F8 {
+        F8::splat(1.0)
+    }
+}
+
+/// Open chains, in lanes.
+pub(super) struct Chains<'a, const D: usize> {
+    pub(super) system: &'a System,
+    pub(super) plan: &'a Plan,
+    pub(super) lanes: &'a mut Lanes,
+}
+
+impl<const D: usize> Field for Chains<'_, D> {
+    fn blocks(&self) -> usize {
+        self.plan.blocks() * D
+    }
+
+    fn begin(&mut self, state: &State, q: &mut [F8], qd: &mut [F8]) {
+        self.lanes.begin::<D>(self.system, self.plan, state, q, qd);
+    }
+
+    fn end(&self, q: &[F8], qd: &[F8], state: &mut State) {
+        self.lanes.end::<D>(self.plan, q, qd, state);
+    }
+
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power> {
+        let dissipation = self.lanes.accelerate::<D>(self.system, self.plan, q, qd, qdd)?;
+        Some(Power { dissipation, stabilization: 0.0 })
+    }
+
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected {
+        let attainable = attainable(self.system, settings, vector_unit().dispatch(Largest(q)));
+        self.lanes.project::<D>(self.plan, q, qd, attainable)
+    }
+
+    fn drift(&self, q: &[F8], qd: &[F8]) -> Drift {
+        self.lanes.drift::<D>(self.plan, q, qd)
+    }
+
+    fn turn_back(&mut self) {}
+
+    fn counted(&self, k: usize) -> F8 {
+        self.plan.counted[k / D]
+    }
+}
