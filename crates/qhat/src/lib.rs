@@ -38,6 +38,7 @@ pub mod constraint;
 pub mod force;
 pub mod linalg;
 
+mod ensemble;
 mod error;
 mod integrate;
 mod lanes;
@@ -50,8 +51,10 @@ mod simulation;
 mod state;
 mod system;
 mod terms;
+mod threads;
 
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm};
+pub use ensemble::step_all;
 pub use error::{BuildError, SettingsError, StepError};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};

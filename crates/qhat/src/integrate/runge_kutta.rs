@@ -18,7 +18,11 @@
 use super::StepWork;
 use super::field::{Field, Power};
 use crate::lanes::{F8, V, vector_unit};
+use crate::threads;
 use pulp::{Simd, WithSimd};
+
+/// Work for one thread [blocks]: some 20 µs, a hundred times what handing it over costs.
+const SHARE: usize = 4096;
 
 /// Most stages of any method here.
 pub(super) const STAGES: usize = 12;
@@ -149,10 +153,10 @@ pub(super) fn advance<F: Field>(tableau: &Tableau, field: &mut F, stages: &mut S
     for i in 1..tableau.stages {
         let (known, rest) = slope.split_at_mut(i);
         let weights = &tableau.at[i];
-        Combine { weights, h, q, qd, slope: known, out_q: stage_q, out_qd: stage_qd }.write();
+        Combine { weights, h, q, qd, slope: known, first: 0, out_q: stage_q, out_qd: stage_qd }.write();
         power[i] = field.accelerate(stage_q, stage_qd, &mut rest[0])?;
     }
-    Combine { weights: &tableau.end, h, q, qd, slope, out_q: next_q, out_qd: next_qd }.write();
+    Combine { weights: &tableau.end, h, q, qd, slope, first: 0, out_q: next_q, out_qd: next_qd }.write();
     let mut work = StepWork { dissipation: 0.0, stabilization: 0.0 };
     for (weight, power) in tableau.end.velocity.iter().zip(power) {
         // Beyond the stages in use the power is that of another method; its weight is zero.
@@ -169,6 +173,8 @@ struct Combine<'a> {
     q: &'a [F8],
     qd: &'a [F8],
     slope: &'a [Vec<F8>],
+    /// Where in each slope q begins.
+    first: usize,
     out_q: &'a mut [F8],
     out_qd: &'a mut [F8],
 }
@@ -184,7 +190,7 @@ impl WithSimd for Combine<'_> {
         for (j, slope) in self.slope.iter().enumerate() {
             let (position, velocity) = (self.weights.position[j], self.weights.velocity[j]);
             if position != 0.0 || velocity != 0.0 {
-                terms[count] = (slope, self.h * self.h * position, self.h * velocity);
+                terms[count] = (&slope[self.first..], self.h * self.h * position, self.h * velocity);
                 count += 1;
             }
         }
@@ -205,9 +211,21 @@ impl WithSimd for Combine<'_> {
 type Term<'a> = (&'a [F8], f64, f64);
 
 impl Combine<'_> {
+    /// On several threads where there is much to do.
     #[inline(never)]
     fn write(self) {
-        vector_unit().dispatch(self);
+        let half = self.q.len() / 2;
+        if half < SHARE {
+            return vector_unit().dispatch(self);
+        }
+        let Combine { weights, h, q, qd, slope, first, out_q, out_qd } = self;
+        let ((q, rest_q), (qd, rest_qd)) = (q.split_at(half), qd.split_at(half));
+        let ((out_q, rest_out_q), (out_qd, rest_out_qd)) = (out_q.split_at_mut(half), out_qd.split_at_mut(half));
+        let one = Combine { weights, h, q, qd, slope, first, out_q, out_qd };
+        let first = first + half;
+        let (out_q, out_qd) = (rest_out_q, rest_out_qd);
+        let other = Combine { weights, h, q: rest_q, qd: rest_qd, slope, first, out_q, out_qd };
+        threads::both(|| one.write(), || other.write());
     }
 
     #[inline(always)]

@@ -127,10 +127,10 @@ impl Plan {
         self.w.len()
     }
 
-    /// Every group with its own part of each array.
+    /// Groups with their own part of each array.
     #[inline(always)]
-    pub(crate) fn stretches(&self) -> impl Iterator<Item = Stretch<'_>> {
-        self.groups.iter().map(
+    pub(crate) fn stretches<'a>(&'a self, groups: &'a [Group]) -> impl Iterator<Item = Stretch<'a>> {
+        groups.iter().map(
             #[inline(always)]
             |group| {
                 let blocks = group.blocks();

@@ -116,8 +116,9 @@ fn every_vector_unit_gives_the_same_bits() {
         let Laid { mut lanes, q, qd } = lay::<3>(&system, plan, &state);
         let (mut plain, mut wide) = (q.clone(), q.clone());
         for (unit, out) in [(Arch::Scalar, &mut plain), (Arch::new(), &mut wide)] {
-            let right = |_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &q[at] };
-            assert!(unit.dispatch(Solve::<_, 3> { plan, q: &q, right, rows: &mut lanes.rows, out }));
+            let right = &|_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &q[at] };
+            let (groups, rows) = (&plan.groups[..], &mut lanes.rows[..]);
+            assert!(unit.dispatch(Solve::<_, 3> { plan, groups, q: &q, right, rows, out }));
         }
         let bits = |numbers: &[F8]| numbers.iter().flat_map(|x| x.0.map(f64::to_bits)).collect::<Vec<u64>>();
         assert_eq!(bits(&plain), bits(&wide), "{} rods", system.row_count());

@@ -51,6 +51,24 @@ pub fn chain(links: usize, heavy: f64) -> (System, State) {
     builder.build().unwrap()
 }
 
+/// So many chains of `links` links of 0.01 m and 0.01 kg, each hung from its own point, at all angles.
+pub fn chains(count: usize, links: usize) -> (System, State) {
+    let mut builder = System::builder(Dimension::Two);
+    for k in 0..count {
+        let angle = k as f64;
+        let step = [0.01 * libm::cos(angle), 0.01 * libm::sin(angle)];
+        let mut before = builder.particle(Particle::at(format!("{k}"), [k as f64, 0.0]).held());
+        for i in 1..=links {
+            let at = [k as f64 + i as f64 * step[0], i as f64 * step[1]];
+            let bead = builder.particle(Particle::at(format!("{k}-{i}"), at).with_mass(0.01));
+            builder.constraint(format!("rod {k}-{i}"), Distance::new(before, bead, 0.01));
+            before = bead;
+        }
+    }
+    builder.force(gravity());
+    builder.build().unwrap()
+}
+
 /// n × n particles of a net in 3D, two corners nailed, the start a little slack so that it is regular.
 pub fn net(n: usize) -> (System, State) {
     let mut builder = System::builder(Dimension::Three);
