@@ -144,7 +144,7 @@ impl Workspace {
 }
 
 fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
-    let rank = equation.solver.rank(&system.matrix.pattern);
+    let rank = equation.solver.rank(&system.matrix);
     let warnings = equation.warnings(system);
     Terms {
         time: state.t,
@@ -156,7 +156,7 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         residual_rate: equation.rows.Cd,
         jacobian: equation.rows.J,
         acceleration_bias: equation.rows.gamma,
-        constraint_matrix: SymmetricMatrix { pattern: system.matrix.pattern.clone(), values: equation.A },
+        constraint_matrix: system.matrix.in_given_order(&equation.A),
         rhs_bias: equation.b.bias,
         rhs_forces: equation.b.forces,
         rhs_stiffness: equation.b.stiffness,

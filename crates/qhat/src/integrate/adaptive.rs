@@ -134,7 +134,7 @@ fn begin<const D: usize>(system: &System, state: &mut State, frame: f64, workspa
             } else {
                 return_to::<D>(system, state, equation);
                 if carry.deficient {
-                    equation.solver.regularize(&system.matrix.pattern);
+                    equation.solver.regularize(&system.matrix);
                 }
             }
             carry

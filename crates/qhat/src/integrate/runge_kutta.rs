@@ -142,7 +142,7 @@ impl<const D: usize, const S: usize> Method<D> for Pair<S> {
         let iterations = positions::<D>(system, settings, equation, q, qd, &mut stages.delta)?;
         equation.factor::<D>(system, 0.0);
         equation.rows.J.multiply::<D>(qd, &mut stages.rate);
-        equation.solver.solve(&system.matrix.pattern, &stages.rate, &mut stages.delta);
+        equation.solver.solve(&system.matrix, &stages.rate, &mut stages.delta);
         add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &stages.delta, -1.0, qd);
         equation.constrain(system, Motion::<D> { q, qd });
         Some(Attempt { error, iterations, dissipation: work.dissipation })
@@ -206,7 +206,7 @@ fn positions<const D: usize>(
         if off.is_infinite() {
             return None;
         }
-        equation.solver.solve(&system.matrix.pattern, &equation.rows.C, delta);
+        equation.solver.solve(&system.matrix, &equation.rows.C, delta);
         add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, q);
     }
     None

@@ -13,7 +13,8 @@
 //! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
 //! how far the rows contradict each other.
 
-use crate::linalg::{Factor, Pattern, rank};
+use super::MatrixStructure;
+use crate::linalg::{Factor, rank};
 
 /// A pivot of the scaled matrix below this is taken for zero. Pivots of regular systems are about the smallest ratio of
 /// inverse masses (1e-9 for a load of a billion beads); roundoff leaves some 1e-15 of a zero.
@@ -36,7 +37,7 @@ const PASSES: usize = 10;
 /// Above this order the rank is not computed (the work grows with its cube), only that it is deficient is said.
 const RANK_UP_TO: usize = 1200;
 
-/// (A + ε I), scaled and factored.
+/// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
 #[derive(Clone, Debug)]
 pub(crate) struct MultiplierSolver {
     factor: Factor,
@@ -56,12 +57,12 @@ pub(crate) struct MultiplierSolver {
 }
 
 impl MultiplierSolver {
-    pub(crate) fn new(pattern: &Pattern) -> Self {
-        let m = pattern.order();
+    pub(crate) fn new(matrix: &MatrixStructure) -> Self {
+        let m = matrix.pattern.order();
         MultiplierSolver {
-            factor: Factor::new(pattern),
+            factor: Factor::with(&matrix.symbolic),
             scale: vec![0.0; m],
-            scaled: vec![0.0; pattern.len()],
+            scaled: vec![0.0; matrix.pattern.len()],
             deficient: false,
             dropped: 0,
             contradiction: 0.0,
@@ -74,11 +75,12 @@ impl MultiplierSolver {
     }
 
     /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) are left out: their λ is zero.
-    pub(crate) fn factor(&mut self, pattern: &Pattern, A: &[f64], epsilon: f64, inert: &[bool]) {
+    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64) {
+        let pattern = &matrix.pattern;
         self.dropped = 0;
-        for i in 0..self.scale.len() {
+        for (i, &row) in matrix.order.iter().enumerate() {
             let diagonal = A[pattern.diagonal(i)] + epsilon;
-            let takes_part = !inert[i] && diagonal > 0.0;
+            let takes_part = !matrix.inert[row as usize] && diagonal > 0.0;
             self.scale[i] = if takes_part { 1.0 / diagonal.sqrt() } else { 0.0 };
             self.dropped += usize::from(!takes_part);
         }
@@ -93,48 +95,48 @@ impl MultiplierSolver {
         self.factorizations += 1;
         let smallest = self.factor.factor(pattern, &self.scaled, 0.0);
         if smallest.is_nan() || smallest < TINY_PIVOT {
-            self.regularize(pattern);
+            self.regularize(matrix);
         }
     }
 
     /// Goes over to G, unless it is in use.
-    pub(crate) fn regularize(&mut self, pattern: &Pattern) {
+    pub(crate) fn regularize(&mut self, matrix: &MatrixStructure) {
         if self.deficient {
             return;
         }
         self.deficient = true;
         self.factorizations += 1;
-        self.factor.factor(pattern, &self.scaled, REGULARIZATION);
+        self.factor.factor(&matrix.pattern, &self.scaled, REGULARIZATION);
     }
 
     /// λ ← (A + ε I)⁻¹ b, or the least-norm λ that comes nearest where the matrix is singular.
-    pub(crate) fn solve(&mut self, pattern: &Pattern, b: &[f64], lambda: &mut [f64]) {
-        for i in 0..b.len() {
-            self.b[i] = self.scale[i] * b[i];
+    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], lambda: &mut [f64]) {
+        for (i, &row) in matrix.order.iter().enumerate() {
+            self.b[i] = self.scale[i] * b[row as usize];
         }
         self.contradiction = 0.0;
-        if !self.deficient && !self.solve_plain(pattern) {
-            self.regularize(pattern);
+        if !self.deficient && !self.solve_plain(matrix) {
+            self.regularize(matrix);
         }
         if self.deficient {
-            self.solve_regularized(pattern);
+            self.solve_regularized(matrix);
         }
-        for i in 0..b.len() {
-            lambda[i] = self.scale[i] * self.x[i];
+        for (i, &row) in matrix.order.iter().enumerate() {
+            lambda[row as usize] = self.scale[i] * self.x[i];
         }
     }
 
     /// Whether the plain factor solved it.
-    fn solve_plain(&mut self, pattern: &Pattern) -> bool {
+    fn solve_plain(&mut self, matrix: &MatrixStructure) -> bool {
         self.x.copy_from_slice(&self.b);
         self.factor.solve(&mut self.x);
-        self.residual(pattern);
+        self.residual(matrix);
         let (residual, size) = (largest(&self.r), largest(&self.b));
         // A right side that is not finite is not the matrix's fault; the step will report it.
         residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
     }
 
-    fn solve_regularized(&mut self, pattern: &Pattern) {
+    fn solve_regularized(&mut self, matrix: &MatrixStructure) {
         let size = largest(&self.b);
         self.y.copy_from_slice(&self.b);
         self.keep_null_space(size);
@@ -146,7 +148,7 @@ impl MultiplierSolver {
         self.x.fill(0.0);
         let mut last = f64::INFINITY;
         for _ in 0..PASSES {
-            self.residual(pattern);
+            self.residual(matrix);
             let residual = largest(&self.r);
             if residual.is_nan() || residual <= REFINED * size || residual > 0.5 * last {
                 break;
@@ -182,20 +184,24 @@ impl MultiplierSolver {
     }
 
     /// r ← b − M x.
-    fn residual(&mut self, pattern: &Pattern) {
-        pattern.multiply(&self.scaled, &self.x, &mut self.r);
+    fn residual(&mut self, matrix: &MatrixStructure) {
+        matrix.pattern.multiply(&self.scaled, &self.x, &mut self.r);
         for i in 0..self.r.len() {
             self.r[i] = self.b[i] - self.r[i];
         }
     }
 
-    /// Whether a row took no part in the last factorization.
-    pub(crate) fn is_left_out(&self, row: usize) -> bool {
-        self.scale[row] == 0.0
+    /// The rows that took no part in the last factorization, ascending.
+    pub(crate) fn left_out(&self, matrix: &MatrixStructure) -> Vec<usize> {
+        let all = matrix.order.iter().zip(&self.scale);
+        let mut rows: Vec<usize> = all.filter(|&(_, &scale)| scale == 0.0).map(|(&row, _)| row as usize).collect();
+        rows.sort_unstable();
+        rows
     }
 
     /// Rank of A at the last factorization; `None` where computing it would take too long.
-    pub(crate) fn rank(&self, pattern: &Pattern) -> Option<usize> {
+    pub(crate) fn rank(&self, matrix: &MatrixStructure) -> Option<usize> {
+        let pattern = &matrix.pattern;
         let m = pattern.order();
         if !self.deficient {
             return Some(m - self.dropped);
