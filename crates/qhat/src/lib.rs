@@ -54,7 +54,7 @@ pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, 
 pub use error::{BuildError, SettingsError, StepError};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
-pub use linalg::SymmetricMatrix;
+pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
 pub use report::{Projection, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings};

@@ -107,6 +107,13 @@ impl FrontPlan {
         plan
     }
 
+    /// [bytes]
+    #[cfg(test)]
+    pub(crate) fn memory(&self) -> usize {
+        let numbers = self.l_len + self.stack_len[0] + self.stack_len[1];
+        8 * H * numbers + 8 * (self.rows.len() + self.entries.len()) + size_of::<Front>() * self.fronts.len()
+    }
+
     fn add(&mut self, first: usize, columns: usize, begin: usize, children: &[u32], entries: &[(u32, u32, u32)]) {
         let rows = begin..self.rows.len();
         let blocks = columns.div_ceil(H) + rows.len().div_ceil(H);

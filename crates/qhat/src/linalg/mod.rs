@@ -7,6 +7,7 @@ mod dense;
 mod dissection;
 mod elimination;
 mod fronts;
+mod hubs;
 mod incidence;
 mod kernel;
 mod multifrontal;
@@ -18,6 +19,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use hubs::Hubs;
 pub(crate) use incidence::Incidence;
 pub(crate) use plan::Plan;
 pub use plan::{Component, Kind, Method};
@@ -50,7 +52,7 @@ impl Factor {
         }
         let plan = Plan::new(&Incidence::of_pattern(pattern));
         let order = plan.order.clone();
-        Factor::with(&Arc::new(Symbolic::new(pattern, &plan, Some(order))))
+        Factor::with(&Arc::new(Symbolic::new(pattern, &plan, Some(order), vec![false; pattern.order()])))
     }
 
     /// For a matrix whose plan was made when its structure was found.
@@ -63,10 +65,23 @@ impl Factor {
     }
 
     /// Factors A + shift·I and returns the smallest pivot; a pivot that is not positive means that no factor was made.
+    /// Unknowns of hubs are not shifted, and their pivots count with the other sign, only if they are wrong.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
         match self {
             Factor::Dense(ldl) => ldl.factor(pattern, values, shift),
             Factor::Sparse(ldl) => ldl.factor(values, shift),
+        }
+    }
+
+    /// What the numbers of L and where they are take [bytes].
+    #[cfg(test)]
+    pub(crate) fn memory(&self) -> usize {
+        match self {
+            Factor::Dense(_) => 0,
+            Factor::Sparse(ldl) => {
+                let (simplicial, fronts) = (&ldl.symbolic.simplicial, &ldl.symbolic.fronts);
+                simplicial.memory() + fronts.memory()
+            }
         }
     }
 
@@ -86,17 +101,19 @@ pub(crate) struct Symbolic {
     /// `order[k]` is the unknown that is eliminated k-th; none where they are numbered so.
     order: Option<Vec<u32>>,
     a: Lower,
+    /// Unknowns of hubs, in the order of elimination: their pivots are negative, and no shift is added to them.
+    negative: Vec<bool>,
     simplicial: SimplicialPlan,
     fronts: FrontPlan,
 }
 
 impl Symbolic {
-    pub(crate) fn new(pattern: &Pattern, plan: &Plan, order: Option<Vec<u32>>) -> Self {
+    pub(crate) fn new(pattern: &Pattern, plan: &Plan, order: Option<Vec<u32>>, negative: Vec<bool>) -> Self {
         let n = pattern.order();
         let a = Lower::new(pattern, order.as_deref());
         let simplicial = SimplicialPlan::new(&a, 0..plan.simplicial);
         let fronts = FrontPlan::new(&a, plan.simplicial..n, &plan.widths);
-        Symbolic { unknowns: n, order, a, simplicial, fronts }
+        Symbolic { unknowns: n, order, a, negative, simplicial, fronts }
     }
 }
 
@@ -123,11 +140,12 @@ impl SparseLdl {
 
     fn factor(&mut self, values: &[f64], shift: f64) -> f64 {
         let symbolic = &*self.symbolic;
-        let smallest = self.simplicial.factor(&symbolic.simplicial, &symbolic.a, values, shift);
+        let negative = &symbolic.negative;
+        let smallest = self.simplicial.factor(&symbolic.simplicial, &symbolic.a, negative, values, shift);
         if smallest.is_nan() || smallest <= 0.0 {
             return smallest;
         }
-        let other = self.fronts.factor(&symbolic.fronts, values, shift);
+        let other = self.fronts.factor(&symbolic.fronts, negative, values, shift);
         if other.is_nan() { other } else { smallest.min(other) }
     }
 

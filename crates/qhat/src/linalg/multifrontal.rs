@@ -44,13 +44,14 @@ impl Multifrontal {
         }
     }
 
-    pub(crate) fn factor(&mut self, plan: &FrontPlan, values: &[f64], shift: f64) -> f64 {
-        self.arch.dispatch(Factorization { ldl: self, plan, values, shift })
+    pub(crate) fn factor(&mut self, plan: &FrontPlan, negative: &[bool], values: &[f64], shift: f64) -> f64 {
+        self.arch.dispatch(Factorization { ldl: self, plan, negative: &negative[plan.range.clone()], values, shift })
     }
 
     /// One front, from A and its children's updates to its columns of L and its own update.
     #[inline(always)]
-    fn eliminate(&mut self, plan: &FrontPlan, front: &Front, values: &[f64], shift: f64) -> f64 {
+    fn eliminate(&mut self, plan: &FrontPlan, front: &Front, negative: &[bool], values: &[f64], shift: f64) -> f64 {
+        let negative = &negative[front.first..][..front.columns];
         let l = &mut self.l[front.l.clone()];
         let [even, odd] = &mut self.stacks;
         let (own, others) = if front.stack == 0 { (even, odd) } else { (odd, even) };
@@ -65,7 +66,9 @@ impl Multifrontal {
             numbers[place as usize] += values[slot as usize];
         }
         for c in 0..front.columns {
-            numbers[front.row_in_l(c) + c * H] += shift;
+            if !negative[c] {
+                numbers[front.row_in_l(c) + c * H] += shift;
+            }
         }
         for &child in &plan.children[front.children.clone()] {
             let child = &plan.fronts[child as usize];
@@ -74,7 +77,7 @@ impl Multifrontal {
         }
         let d = &mut self.d[front.first..][..front.columns];
         let inverse_d = &mut self.inverse_d[front.first..][..front.columns];
-        let smallest = factor_columns(front.columns, l, d, inverse_d, &mut self.scratch.w);
+        let smallest = factor_columns(l, negative, d, inverse_d, &mut self.scratch.w);
         if smallest > 0.0 {
             subtract_update(front, l, d, update, &mut self.scratch.w);
         }
@@ -91,6 +94,7 @@ impl Multifrontal {
 struct Factorization<'a> {
     ldl: &'a mut Multifrontal,
     plan: &'a FrontPlan,
+    negative: &'a [bool],
     values: &'a [f64],
     shift: f64,
 }
@@ -102,7 +106,7 @@ impl NullaryFnOnce for Factorization<'_> {
     fn call(self) -> f64 {
         let mut smallest = f64::INFINITY;
         for front in &self.plan.fronts {
-            let pivot = self.ldl.eliminate(self.plan, front, self.values, self.shift);
+            let pivot = self.ldl.eliminate(self.plan, front, self.negative, self.values, self.shift);
             if pivot.is_nan() || pivot <= 0.0 {
                 return pivot;
             }
@@ -171,24 +175,26 @@ fn take(
 
 /// Eight columns after eight: what is left of them is subtracted, then they are eliminated in all rows.
 #[inline(always)]
-fn factor_columns(k: usize, l: &mut [Lanes], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Lanes]) -> f64 {
+fn factor_columns(l: &mut [Lanes], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Lanes]) -> f64 {
+    let k = d.len();
     let mut smallest = f64::INFINITY;
     for begin in (0..k).step_by(H) {
         // The blocks of rows from these columns on.
         let l = &mut l[begin / H * k..];
         let (before, d) = d.split_at_mut(begin);
         let inverse_d = &mut inverse_d[begin..];
+        let negative = &negative[begin..];
         let w = &mut w[..begin];
         scale(&l[..begin], before, w);
         let pivot = match k - begin {
-            1 => factor_tiles::<1>(k, l, d, inverse_d, w),
-            2 => factor_tiles::<2>(k, l, d, inverse_d, w),
-            3 => factor_tiles::<3>(k, l, d, inverse_d, w),
-            4 => factor_tiles::<4>(k, l, d, inverse_d, w),
-            5 => factor_tiles::<5>(k, l, d, inverse_d, w),
-            6 => factor_tiles::<6>(k, l, d, inverse_d, w),
-            7 => factor_tiles::<7>(k, l, d, inverse_d, w),
-            _ => factor_tiles::<8>(k, l, d, inverse_d, w),
+            1 => factor_tiles::<1>(k, l, negative, d, inverse_d, w),
+            2 => factor_tiles::<2>(k, l, negative, d, inverse_d, w),
+            3 => factor_tiles::<3>(k, l, negative, d, inverse_d, w),
+            4 => factor_tiles::<4>(k, l, negative, d, inverse_d, w),
+            5 => factor_tiles::<5>(k, l, negative, d, inverse_d, w),
+            6 => factor_tiles::<6>(k, l, negative, d, inverse_d, w),
+            7 => factor_tiles::<7>(k, l, negative, d, inverse_d, w),
+            _ => factor_tiles::<8>(k, l, negative, d, inverse_d, w),
         };
         if pivot.is_nan() || pivot <= 0.0 {
             return pivot;
@@ -200,7 +206,14 @@ fn factor_columns(k: usize, l: &mut [Lanes], d: &mut [f64], inverse_d: &mut [f64
 
 /// N columns in all blocks of rows: the first block holds their pivots. w is D Lᵀ of the columns before.
 #[inline(always)]
-fn factor_tiles<const N: usize>(k: usize, l: &mut [Lanes], d: &mut [f64], inverse_d: &mut [f64], w: &[Lanes]) -> f64 {
+fn factor_tiles<const N: usize>(
+    k: usize,
+    l: &mut [Lanes],
+    negative: &[bool],
+    d: &mut [f64],
+    inverse_d: &mut [f64],
+    w: &[Lanes],
+) -> f64 {
     let mut smallest = f64::INFINITY;
     let (mut y, mut inverse) = ([[0.0; H]; N], [0.0; N]);
     for (b, block) in l.chunks_exact_mut(k).enumerate() {
@@ -221,13 +234,15 @@ fn factor_tiles<const N: usize>(k: usize, l: &mut [Lanes], d: &mut [f64], invers
         }
         if b == 0 {
             for c in 0..N {
-                let pivot = own[c][c];
+                d[c] = own[c][c];
+                let pivot = if negative[c] { -d[c] } else { d[c] };
                 if pivot.is_nan() || pivot <= 0.0 {
                     return pivot;
                 }
-                smallest = smallest.min(pivot);
-                d[c] = pivot;
-                inverse[c] = 1.0 / pivot;
+                if !negative[c] {
+                    smallest = smallest.min(pivot);
+                }
+                inverse[c] = 1.0 / d[c];
                 inverse_d[c] = inverse[c];
                 y[c] = own[c];
                 own[c] = scaled(&y[c], inverse[c]);

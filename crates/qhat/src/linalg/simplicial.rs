@@ -62,6 +62,12 @@ impl SimplicialPlan {
         SimplicialPlan { rows, row_start, row_entry, column_start, row_index }
     }
 
+    /// [bytes]
+    #[cfg(test)]
+    pub(crate) fn memory(&self) -> usize {
+        20 * self.row_index.len() + 24 * self.rows.len()
+    }
+
     fn column(&self, i: usize) -> Range<usize> {
         self.column_start[i] as usize..self.column_start[i + 1] as usize
     }
@@ -82,7 +88,14 @@ impl Simplicial {
         Simplicial { l: vec![0.0; plan.row_index.len()], d: vec![0.0; n], y: vec![0.0; n] }
     }
 
-    pub(crate) fn factor(&mut self, plan: &SimplicialPlan, a: &Lower, values: &[f64], shift: f64) -> f64 {
+    pub(crate) fn factor(
+        &mut self,
+        plan: &SimplicialPlan,
+        a: &Lower,
+        negative: &[bool],
+        values: &[f64],
+        shift: f64,
+    ) -> f64 {
         let (n, first) = (plan.rows.len(), plan.rows.start);
         let (l, d, y) = (&mut self.l[..], &mut self.d[..n], &mut self.y[..n]);
         let mut smallest = f64::INFINITY;
@@ -90,7 +103,8 @@ impl Simplicial {
             for &(column, slot) in a.row(first + k) {
                 y[column as usize - first] += values[slot as usize];
             }
-            let mut pivot = y[k] + shift;
+            let negative = negative[first + k];
+            let mut pivot = if negative { y[k] } else { y[k] + shift };
             y[k] = 0.0;
             for &(i, place) in &plan.row_entry[plan.row_start[k] as usize..plan.row_start[k + 1] as usize] {
                 let (i, place) = (i as usize, place as usize);
@@ -104,10 +118,13 @@ impl Simplicial {
                 pivot -= l[place] * entry;
             }
             d[k] = pivot;
+            let pivot = if negative { -pivot } else { pivot };
             if pivot.is_nan() || pivot <= 0.0 {
                 return pivot;
             }
-            smallest = smallest.min(pivot);
+            if !negative {
+                smallest = smallest.min(pivot);
+            }
         }
         smallest
     }

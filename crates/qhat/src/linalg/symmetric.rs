@@ -114,27 +114,6 @@ impl SymmetricMatrix {
         dense
     }
 
-    /// The same with row k as row `order[k]`.
-    pub(crate) fn renumbered(&self, order: &[u32]) -> Self {
-        let mut entries = Vec::with_capacity(self.values.len());
-        for i in 0..self.order() {
-            for slot in self.pattern.start[i]..self.pattern.start[i + 1] {
-                let (k, l) = (order[i] as usize, order[self.pattern.column[slot]] as usize);
-                entries.push((k.max(l), k.min(l), self.values[slot]));
-            }
-        }
-        entries.sort_unstable_by_key(|&(i, j, _)| (i, j));
-        let mut start = vec![0; self.order() + 1];
-        for &(i, _, _) in &entries {
-            start[i + 1] += 1;
-        }
-        for i in 0..self.order() {
-            start[i + 1] += start[i];
-        }
-        let pattern = Pattern { start, column: entries.iter().map(|&(_, j, _)| j).collect() };
-        SymmetricMatrix { pattern, values: entries.iter().map(|&(_, _, value)| value).collect() }
-    }
-
     /// out = A x.
     pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
         self.pattern.multiply(&self.values, x, out);

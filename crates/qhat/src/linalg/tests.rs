@@ -91,7 +91,7 @@ fn fill(pattern: &Pattern, order: &[usize]) -> usize {
 
 fn sparse(pattern: &Pattern) -> SparseLdl {
     let plan = Plan::new(&Incidence::of_pattern(pattern));
-    SparseLdl::new(Symbolic::new(pattern, &plan, Some(plan.order.clone())).into())
+    SparseLdl::new(Symbolic::new(pattern, &plan, Some(plan.order.clone()), vec![false; pattern.order()]).into())
 }
 
 fn right_side(n: usize) -> Vec<f64> {
@@ -155,11 +155,11 @@ proptest! {
         let incidence = Incidence::of_pattern(&pattern);
         let (order, widths) = Elimination::new(&incidence).fronts();
         let n = pattern.order();
-        let blocked = Plan { order: order.clone(), simplicial: 0, widths, components: Vec::new() };
-        let single = Plan { order, simplicial: n, widths: Vec::new(), components: Vec::new() };
+        let blocked = Plan { order: order.clone(), simplicial: 0, widths, ..Plan::default() };
+        let single = Plan { order, simplicial: n, ..Plan::default() };
         let b = right_side(n);
         let solve = |plan: &Plan| {
-            let mut ldl = SparseLdl::new(Symbolic::new(&pattern, plan, Some(plan.order.clone())).into());
+            let mut ldl = SparseLdl::new(Symbolic::new(&pattern, plan, Some(plan.order.clone()), vec![false; pattern.order()]).into());
             let pivot = ldl.factor(&values, shift);
             let mut x = b.clone();
             ldl.solve(&mut x);

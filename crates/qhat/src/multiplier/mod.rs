@@ -12,7 +12,7 @@ mod rhs;
 mod tests;
 
 pub(crate) use factor::MultiplierSolver;
-pub(crate) use matrix::MatrixStructure;
+pub(crate) use matrix::{MatrixPlan, MatrixStructure};
 pub(crate) use rhs::RightHandSide;
 
 use crate::constraint::Rows;
@@ -102,7 +102,7 @@ impl Equation {
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });
         }
-        if self.solver.deficient {
+        if self.solver.singular {
             warnings.push(Warning::Singular);
         }
         warnings

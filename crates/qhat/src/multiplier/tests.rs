@@ -141,7 +141,7 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
 #[ignore = "a measurement, not a check"]
 fn timed_solves() {
     let only = std::env::var("QHAT_TIMED").unwrap_or_default();
-    let cases: [(&str, &dyn Fn() -> (System, State)); 11] = [
+    let cases: [(&str, &dyn Fn() -> (System, State)); 13] = [
         ("chain100", &|| chain(100)),
         ("chain1e6", &|| chain(1_000_000)),
         ("truss20", &|| truss(20)),
@@ -150,6 +150,8 @@ fn timed_solves() {
         ("net10", &|| net(10)),
         ("net32", &|| net(32)),
         ("net100", &|| net(100)),
+        ("star30", &|| star(30)),
+        ("star50", &|| star(50)),
         ("star1000", &|| star(1000)),
         ("net316", &|| net(316)),
         ("net1000", &|| net(1000)),
@@ -158,5 +160,45 @@ fn timed_solves() {
         if only.split(',').any(|word| word == *name) || only.is_empty() {
             timed(name, build);
         }
+    }
+}
+
+/// Redundant rods between a hub and its tips, and three rods in a plane that hold a tip: only the first are singular.
+#[test]
+fn a_hub_is_not_mistaken_for_a_redundancy() {
+    for redundant in [false, true] {
+        let mut builder = System::builder(Dimension::Three);
+        let at = |x: f64, y: f64, z: f64| Particle::at(format!("{x} {y} {z}"), [x, y, z]);
+        let hub = builder.particle(at(0.0, 0.0, 0.0));
+        let anchors = [[-1.0, 5.0, 0.0], [1.0, 5.0, 0.0]].map(|x| builder.particle(at(x[0], x[1], x[2]).held()));
+        for i in 0..40 {
+            let (angle, z) = (0.3 * f64::from(i), if i == 0 { 0.0 } else { 1.0 });
+            let tip = builder.particle(at(libm::cos(angle), libm::sin(angle), z));
+            let length = (1.0 + z * z).sqrt();
+            rod(&mut builder, hub, tip, length);
+            if i == 0 {
+                // In one plane with the rod to the hub.
+                rod(&mut builder, tip, anchors[0], 29.0_f64.sqrt());
+                rod(&mut builder, tip, anchors[1], 5.0);
+            }
+            if redundant && i == 7 {
+                builder.constraint("again", Distance::new(hub, tip, length));
+            }
+        }
+        let (system, state) = builder.build().unwrap();
+        assert_eq!(system.components()[0].hubs, 1);
+        let terms = crate::evaluate(&system, &state);
+        assert_eq!(terms.warnings == [crate::Warning::Singular], redundant, "{:?}", terms.warnings);
+        assert_eq!(terms.rank, Some(42), "of {} rows", system.row_count());
+    }
+}
+
+/// What is foretold of memory, before anything is allocated, is within a factor of two of what the factor then takes.
+#[test]
+fn memory_is_foretold() {
+    for (name, (system, _)) in [("truss", truss(200)), ("net", net(60)), ("star", star(1000)), ("chain", chain(1000))] {
+        let foretold: u64 = system.components().iter().map(|component| component.memory).sum();
+        let taken = crate::linalg::Factor::with(&system.matrix.symbolic).memory() as u64;
+        assert!(foretold < 2 * taken && taken < 2 * foretold, "{name}: {foretold} foretold, {taken} bytes taken");
     }
 }
