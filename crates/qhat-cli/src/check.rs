@@ -9,7 +9,7 @@ use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
-use qhat::{Component, Integrator, Settings, Simulation, Terms, evaluate};
+use qhat::{Component, Integrator, Method, Settings, Simulation, Terms, evaluate};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -108,14 +108,11 @@ impl Components {
     fn in_words(&self) -> String {
         let how_many = if self.count == 1 { String::new() } else { format!("{} times ", self.count) };
         let hubs = if self.hubs == 0 { String::new() } else { format!(" with {}", count(self.hubs, "hub")) };
-        format!(
-            "{how_many}{}{hubs}, {}: {}, {} entries of L, {} operations to factor",
-            self.kind,
-            count(self.rows, "row"),
-            self.method,
-            self.entries_of_l,
-            self.factor_flops
-        )
+        let mut words = format!("{how_many}{}{hubs}, {}: {}", self.kind, count(self.rows, "row"), self.method);
+        if self.method != Method::Dense.name() {
+            words += &format!(", {} entries of L, {} operations to factor", self.entries_of_l, self.factor_flops);
+        }
+        words
     }
 }
 

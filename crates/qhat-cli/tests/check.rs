@@ -94,7 +94,8 @@ fn plain_words() {
                     constraints  1 row, 1 of them on free particles; 1 rod\n  \
                     start        every constraint holds exactly\n  \
                     rank         1: no row is redundant, so every tension is unique\n  \
-                    freedom      1 degree of freedom\n";
+                    freedom      1 degree of freedom\n  \
+                    component    path, 1 row: dense\n";
     assert_eq!(said, expected);
 }
 
