@@ -9,7 +9,7 @@ use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
-use qhat::{Integrator, Settings, Simulation, Terms, evaluate};
+use qhat::{Component, Integrator, Method, Settings, Simulation, Terms, evaluate};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -66,8 +66,58 @@ struct Findings {
     degrees_of_freedom: Option<usize>,
     states_of_self_stress: Option<usize>,
     redundant: Option<bool>,
+    /// What the rows fall into, components alike told once.
+    components: Vec<Components>,
     warnings: Vec<String>,
 }
+
+/// Connected components of A that are alike.
+#[derive(Debug, Serialize)]
+struct Components {
+    count: usize,
+    kind: &'static str,
+    rows: usize,
+    hubs: usize,
+    method: &'static str,
+    entries_of_l: u64,
+    factor_flops: u64,
+    solve_flops: u64,
+    memory_bytes: u64,
+}
+
+impl Components {
+    fn alike(components: &[Component]) -> Vec<Self> {
+        let mut sorted: Vec<&Component> = components.iter().collect();
+        sorted.sort_by_key(|c| (std::cmp::Reverse(c.rows), c.kind.name(), c.hubs, c.factor_flops));
+        let groups = sorted.chunk_by(|a, b| a == b);
+        groups
+            .map(|group| Components {
+                count: group.len(),
+                kind: group[0].kind.name(),
+                rows: group[0].rows,
+                hubs: group[0].hubs,
+                method: group[0].method.name(),
+                entries_of_l: group[0].entries,
+                factor_flops: group[0].factor_flops,
+                solve_flops: group[0].solve_flops,
+                memory_bytes: group[0].memory,
+            })
+            .collect()
+    }
+
+    fn in_words(&self) -> String {
+        let how_many = if self.count == 1 { String::new() } else { format!("{} times ", self.count) };
+        let hubs = if self.hubs == 0 { String::new() } else { format!(" with {}", count(self.hubs, "hub")) };
+        let mut words = format!("{how_many}{}{hubs}, {}: {}", self.kind, count(self.rows, "row"), self.method);
+        if self.method != Method::Dense.name() {
+            words += &format!(", {} entries of L, {} operations to factor", self.entries_of_l, self.factor_flops);
+        }
+        words
+    }
+}
+
+/// Kinds of components that are listed; of the smaller ones only the number is said.
+const LISTED: usize = 4;
 
 impl Findings {
     fn of(scene: &Scene) -> Self {
@@ -115,6 +165,7 @@ impl Findings {
             states_of_self_stress: rank.map(|rank| rows.saturating_sub(rank)),
             // Where the rank is not counted, that is because A is singular.
             redundant: feasible.then(|| rank.is_none_or(|rank| rank < rows)),
+            components: Components::alike(system.components()),
             warnings,
         }
     }
@@ -142,6 +193,11 @@ impl Findings {
                 lines.push(("rank", "some rows are redundant; the system is too large to count them".into()));
             }
             _ => {}
+        }
+        lines.extend(self.components.iter().take(LISTED).map(|components| ("component", components.in_words())));
+        let others: usize = self.components.iter().skip(LISTED).map(|components| components.count).sum();
+        if others > 0 {
+            lines.push(("component", format!("and {others} smaller")));
         }
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         print::table(&format!("{}: {}", self.scene, self.verdict()), &lines)

@@ -94,7 +94,8 @@ fn plain_words() {
                     constraints  1 row, 1 of them on free particles; 1 rod\n  \
                     start        every constraint holds exactly\n  \
                     rank         1: no row is redundant, so every tension is unique\n  \
-                    freedom      1 degree of freedom\n";
+                    freedom      1 degree of freedom\n  \
+                    component    path, 1 row: dense\n";
     assert_eq!(said, expected);
 }
 
@@ -105,4 +106,33 @@ fn every_shipped_scene_passes() {
         let ran = folder.qhat(&["check", scene["name"].as_str().unwrap(), "--json"]).well();
         assert_eq!(ran.json()["feasible"], true, "{scene}");
     }
+}
+
+#[test]
+fn components_are_named_with_their_method() {
+    // A square with one diagonal, hinged to nothing, and a pendulum.
+    let points = [
+        (0.0, 0.0, false),
+        (1.0, 0.0, false),
+        (1.0, 1.0, false),
+        (0.0, 1.0, false),
+        (5.0, 0.0, true),
+        (5.0, 1.0, false),
+    ];
+    let rods = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (4, 5)];
+    let found = check(&truss(&points, &rods));
+    let told: Vec<_> =
+        found["components"].as_array().unwrap().iter().map(|c| (&c["kind"], &c["rows"], &c["method"])).collect();
+    assert_eq!(told, [(&json!("cyclic"), &json!(5), &json!("dense")), (&json!("path"), &json!(1), &json!("dense"))]);
+
+    // Forty spokes are a hub; each spoke adds one entry for each direction, and its own.
+    let spokes: Vec<(f64, f64, bool)> = (0..40).map(|i| (f64::from(i) - 20.5, 1.0, false)).collect();
+    let star = truss(&[&[(0.0, 0.0, false)], &spokes[..]].concat(), &(1..=40).map(|i| (0, i)).collect::<Vec<_>>());
+    let found = &check(&star)["components"][0];
+    assert_eq!(
+        (&found["kind"], &found["hubs"], &found["entries_of_l"]),
+        (&json!("tree"), &json!(1), &json!(40 * 3 + 3))
+    );
+    let words = Folder::new().qhat_reading(&star, &["check", "-"]).well().stdout;
+    assert!(words.contains("tree with 1 hub, 40 rows: simplicial"), "{words}");
 }

@@ -30,6 +30,17 @@ pub enum BuildError {
         /// What is wrong.
         message: String,
     },
+    /// The factor of A would not fit.
+    #[error(
+        "the constraints are so many and so closely connected that factoring them would take {} GiB of memory; the limit is {} GiB",
+        memory.div_ceil(1 << 30), limit >> 30
+    )]
+    TooLarge {
+        /// What it would take [bytes].
+        memory: u64,
+        /// What is allowed [bytes].
+        limit: u64,
+    },
     /// A feedback coefficient is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),

@@ -58,7 +58,7 @@ pub use ensemble::step_all;
 pub use error::{BuildError, SettingsError, StepError};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
-pub use linalg::SymmetricMatrix;
+pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
 pub use report::{Projection, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings};

@@ -5,11 +5,15 @@ use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
 use crate::lanes::Plan;
-use crate::multiplier::MatrixStructure;
+use crate::linalg::Component;
+use crate::multiplier::{MatrixPlan, MatrixStructure};
 use crate::point::{Motion, block, minus, norm};
 use crate::settings::Feedback;
 use crate::state::State;
 use std::collections::HashSet;
+
+/// A factor that would take more is refused [bytes]: 16 GiB, above what computers that show such scenes have to spare.
+const MEMORY_LIMIT: u64 = 16 << 30;
 
 /// Number of space dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -215,6 +219,22 @@ impl System {
         })
     }
 
+    /// The parts of A = J W Jᵀ that are coupled with no other: how each hangs together, how it is factored and what that costs.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Distance, Kind, Method, Particle, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let ends = [0.0, 1.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0])));
+    /// builder.constraint("left", Distance::new(ends[0], ends[1], 1.0)).constraint("right", Distance::new(ends[1], ends[2], 1.0));
+    /// let (system, _) = builder.build()?;
+    /// let [chain] = system.components() else { panic!("one chain") };
+    /// assert_eq!((chain.kind, chain.rows, chain.method, chain.entries), (Kind::Path, 2, Method::Dense, 3));
+    /// # Ok::<(), qhat::BuildError>(())
+    /// ```
+    pub fn components(&self) -> &[Component] {
+        &self.matrix.components
+    }
+
     /// The applied forces, in the order they were added.
     pub fn forces(&self) -> &[Force] {
         &self.forces
@@ -236,6 +256,7 @@ impl System {
         let constraints = constraints.map(|named| (named.name.clone(), named.constraint.formulated(formulation)));
         let mut system = self.clone();
         system.set_constraints(constraints.collect());
+        system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
         system
     }
 
@@ -294,8 +315,11 @@ impl System {
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
-        self.matrix = MatrixStructure::new(&self.layout, &self.inverse_mass);
         self.plan = Plan::new(self);
+    }
+
+    fn plan_matrix(&self) -> MatrixPlan {
+        MatrixPlan::new(&self.layout, &self.inverse_mass, self.dimension())
     }
 }
 
@@ -338,7 +362,7 @@ impl SystemBuilder {
     ///
     /// # Errors
     /// A name used twice, a number that is not finite or not allowed, a particle of the wrong dimension or that does not
-    /// exist, a fixed particle that moves.
+    /// exist, a fixed particle that moves, so many constraints so closely connected that their factor would not fit.
     pub fn build(self) -> Result<(System, State), BuildError> {
         self.check()?;
         let q: Vec<f64> = self.particles.iter().flat_map(|particle| particle.position.iter().copied()).collect();
@@ -360,6 +384,11 @@ impl SystemBuilder {
             extent,
         };
         system.set_constraints(self.constraints);
+        let plan = system.plan_matrix();
+        if plan.memory() > MEMORY_LIMIT {
+            return Err(BuildError::TooLarge { memory: plan.memory(), limit: MEMORY_LIMIT });
+        }
+        system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, plan);
         Ok((system, State::new(q, qd)))
     }
 

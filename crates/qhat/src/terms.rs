@@ -144,8 +144,10 @@ impl Workspace {
 }
 
 fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
-    let rank = equation.solver.rank(&system.matrix.pattern);
+    let rank = equation.solver.rank(&system.matrix);
     let warnings = equation.warnings(system);
+    let constraint_matrix =
+        in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&equation.rows.J, &system.inverse_mass));
     Terms {
         time: state.t,
         positions: state.q.clone(),
@@ -156,7 +158,7 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         residual_rate: equation.rows.Cd,
         jacobian: equation.rows.J,
         acceleration_bias: equation.rows.gamma,
-        constraint_matrix: SymmetricMatrix { pattern: system.matrix.pattern.clone(), values: equation.A },
+        constraint_matrix,
         rhs_bias: equation.b.bias,
         rhs_forces: equation.b.forces,
         rhs_stiffness: equation.b.stiffness,

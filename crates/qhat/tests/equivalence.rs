@@ -73,6 +73,63 @@ fn star(arms: usize) -> (System, State) {
     builder.build().unwrap()
 }
 
+/// Two free hubs with many rods each, to particles that they share, that are held by rods to the ground or nailed, that have
+/// a second rod to the hub (`redundant`), to each other and to what is fixed.
+fn hubs(d: usize, redundant: bool) -> (System, State) {
+    let mut builder = System::builder(systems::random::dimension(d));
+    let mut random = Random::new(7 + d as u64);
+    let place = |random: &mut Random, x: f64| {
+        let offset = random.numbers(d, -0.4, 0.4);
+        offset.iter().enumerate().map(|(k, y)| y + if k == 0 { x } else { 5.0 }).collect::<Vec<f64>>()
+    };
+    let apart = |a: &[f64], b: &[f64]| norm(&difference_of(a, b));
+    let (left, right) = (vec![-1.0; d], vec![2.0; d]);
+    let a = builder.particle(Particle::at("a", left.clone()).with_mass(0.3));
+    let b = builder.particle(Particle::at("b", right.clone()).with_mass(5.0));
+    let ground = builder.particle(Particle::at("ground", vec![0.0; d]).held());
+    builder.constraint("a b", Distance::new(a, b, apart(&left, &right)));
+    builder.constraint("a ground", Distance::new(a, ground, norm(&left)));
+    for i in 0..56 {
+        let x = place(&mut random, 0.1 * f64::from(i) - 2.0);
+        let tip = builder.particle(Particle::at(format!("t{i}"), x.clone()).with_mass(0.1 + 0.01 * f64::from(i)));
+        builder.constraint(format!("a{i}"), Distance::new(a, tip, apart(&left, &x)));
+        if i % 2 == 0 || i > 40 {
+            builder.constraint(format!("b{i}"), Distance::new(b, tip, apart(&right, &x)));
+        }
+        if i % 8 == 1 {
+            builder.constraint(format!("g{i}"), Distance::new(tip, ground, norm(&x)));
+        }
+        if i == 3 {
+            builder.constraint("nail", Nail::new(tip, std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))));
+        }
+        if redundant && i % 20 == 5 {
+            builder.constraint(format!("again{i}"), Distance::new(a, tip, apart(&left, &x)));
+        }
+    }
+    for i in 0..40 {
+        let x = place(&mut random, 0.1 * f64::from(i));
+        let tip = builder.particle(Particle::at(format!("u{i}"), x.clone()));
+        builder.constraint(format!("c{i}"), Distance::new(b, tip, apart(&right, &x)));
+    }
+    builder.force(systems::gravity());
+    builder.build().unwrap()
+}
+
+fn difference_of(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// Hubs keep unknowns of their own; λ, the rank and what is said of it are those of A.
+#[test]
+fn hubs_change_nothing() {
+    for d in [2, 3] {
+        for redundant in [false, true] {
+            let (system, state) = hubs(d, redundant);
+            check(&format!("hubs in {d} dimensions, redundant: {redundant}"), &system, &state);
+        }
+    }
+}
+
 /// The same at velocities that are not zero, so that γ takes part, and legal, so that redundant rows agree about C̈.
 fn moving(random: &mut Random, (system, state): (System, State)) -> (System, State) {
     let d = system.dimension();

@@ -109,7 +109,7 @@ impl Assembly<'_, '_, '_> {
 fn place_of(error: &BuildError, tree: &Node, ids: &Ids) -> std::ops::Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
-        BuildError::Constraint { .. } => tree.key("constraints").span.clone(),
+        BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),
     }

@@ -200,7 +200,7 @@ pub(super) fn begin<const D: usize>(
     } else {
         return_to::<D>(system, state, equation);
         if carry.deficient {
-            equation.solver.regularize(&system.matrix.pattern);
+            equation.solver.regularize(&system.matrix);
         }
     }
     carry.lambda

@@ -99,7 +99,7 @@ impl<const D: usize> Field for Rows<'_, D> {
 
     fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected {
         let Workspace { equation, q: flat_q, qd: flat_qd, delta, .. } = &mut *self.workspace;
-        let (system, pattern) = (self.system, &self.system.matrix.pattern);
+        let (system, matrix) = (self.system, &self.system.matrix);
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         for iteration in 0..=MAX_ITERATIONS {
@@ -108,7 +108,7 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
                 equation.rows.J.multiply::<D>(flat_qd, &mut equation.b.sum);
-                equation.solver.solve(pattern, &equation.b.sum, delta);
+                equation.solver.solve(matrix, &equation.b.sum, delta);
                 add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
                 equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
                 pack(flat_q, q);
@@ -119,7 +119,7 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off.is_infinite() {
                 break;
             }
-            equation.solver.solve(pattern, &equation.rows.C, delta);
+            equation.solver.solve(matrix, &equation.rows.C, delta);
             add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_q);
         }
         Projected::NotMet

@@ -153,7 +153,7 @@ fn substep<const D: usize>(
 ) -> Option<(f64, usize)> {
     let Workspace { equation, q, qd, rattle: scratch, .. } = workspace;
     let W = &system.inverse_mass;
-    let pattern = &system.matrix.pattern;
+    let matrix = &system.matrix;
     scratch.J.blocks.copy_from_slice(&equation.rows.J.blocks);
     scratch.WQ.copy_from_slice(&equation.WQ);
 
@@ -181,7 +181,7 @@ fn substep<const D: usize>(
             return None;
         }
         last = off;
-        equation.solver.solve(pattern, &equation.rows.C, &mut scratch.delta);
+        equation.solver.solve(matrix, &equation.rows.C, &mut scratch.delta);
         for (mu, delta) in scratch.mu.iter_mut().zip(&scratch.delta) {
             *mu -= delta;
         }
@@ -208,7 +208,7 @@ fn substep<const D: usize>(
     // ν in one solve, with the factor at q'.
     equation.factor::<D>(system, 0.0);
     equation.rows.J.multiply::<D>(qd, &mut scratch.delta);
-    equation.solver.solve(pattern, &scratch.delta, &mut scratch.nu);
+    equation.solver.solve(matrix, &scratch.delta, &mut scratch.nu);
     for nu in &mut scratch.nu {
         *nu = -*nu;
     }

@@ -2,23 +2,39 @@
 //!
 //! Every operation is a plain f64 operation in a fixed order, so native and wasm results agree bit for bit.
 
+mod bisection;
 mod dense;
+mod dissection;
+mod elimination;
+mod fronts;
+mod hubs;
+mod incidence;
+mod kernel;
+mod multifrontal;
 mod ordering;
+mod plan;
 mod rank;
-mod sparse;
+mod simplicial;
 mod symmetric;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use hubs::Hubs;
+pub(crate) use incidence::Incidence;
+pub(crate) use plan::Plan;
+pub use plan::{Component, Kind, Method};
 pub(crate) use rank::rank;
-pub(crate) use symmetric::Pattern;
 pub use symmetric::SymmetricMatrix;
+pub(crate) use symmetric::{Lower, Pattern};
 
 use dense::DenseLdl;
-use sparse::SparseLdl;
+use fronts::FrontPlan;
+use multifrontal::Multifrontal;
+use simplicial::{Simplicial, SimplicialPlan};
+use std::sync::Arc;
 
 /// Up to this order the dense factorization is at least as fast as the sparse one, whatever the pattern.
-const DENSE_UP_TO: usize = 24;
+pub(crate) const DENSE_UP_TO: usize = 24;
 
 /// The LDLᵀ factorization of a symmetric positive definite matrix, dense when small, sparse beyond.
 #[derive(Clone, Debug)]
@@ -28,20 +44,44 @@ pub(crate) enum Factor {
 }
 
 impl Factor {
-    /// Chooses the method and prepares everything that depends on the pattern alone.
+    /// Chooses the method and the order and prepares everything that depends on the pattern alone.
+    #[allow(dead_code, reason = "for matrices that do not come from a System: tests, so far")]
     pub(crate) fn new(pattern: &Pattern) -> Self {
         if pattern.order() <= DENSE_UP_TO {
-            Factor::Dense(DenseLdl::new(pattern.order()))
+            return Factor::Dense(DenseLdl::new(pattern.order()));
+        }
+        let plan = Plan::new(&Incidence::of_pattern(pattern));
+        let order = plan.order.clone();
+        Factor::with(&Arc::new(Symbolic::new(pattern, &plan, Some(order), vec![false; pattern.order()])))
+    }
+
+    /// For a matrix whose plan was made when its structure was found.
+    pub(crate) fn with(symbolic: &Arc<Symbolic>) -> Self {
+        if symbolic.unknowns <= DENSE_UP_TO {
+            Factor::Dense(DenseLdl::new(symbolic.unknowns))
         } else {
-            Factor::Sparse(Box::new(SparseLdl::new(pattern)))
+            Factor::Sparse(Box::new(SparseLdl::new(symbolic.clone())))
         }
     }
 
     /// Factors A + shift·I and returns the smallest pivot; a pivot that is not positive means that no factor was made.
+    /// Unknowns of hubs are not shifted, and their pivots count with the other sign, only if they are wrong.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
         match self {
             Factor::Dense(ldl) => ldl.factor(pattern, values, shift),
             Factor::Sparse(ldl) => ldl.factor(values, shift),
+        }
+    }
+
+    /// What the numbers of L and where they are take [bytes].
+    #[cfg(test)]
+    pub(crate) fn memory(&self) -> usize {
+        match self {
+            Factor::Dense(_) => 0,
+            Factor::Sparse(ldl) => {
+                let (simplicial, fronts) = (&ldl.symbolic.simplicial, &ldl.symbolic.fronts);
+                simplicial.memory() + fronts.memory()
+            }
         }
     }
 
@@ -50,6 +90,78 @@ impl Factor {
         match self {
             Factor::Dense(ldl) => ldl.solve(x),
             Factor::Sparse(ldl) => ldl.solve(x),
+        }
+    }
+}
+
+/// All of a sparse factorization that depends on the pattern alone.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Symbolic {
+    unknowns: usize,
+    /// `order[k]` is the unknown that is eliminated k-th; none where they are numbered so.
+    order: Option<Vec<u32>>,
+    a: Lower,
+    /// Unknowns of hubs, in the order of elimination: their pivots are negative, and no shift is added to them.
+    negative: Vec<bool>,
+    simplicial: SimplicialPlan,
+    fronts: FrontPlan,
+}
+
+impl Symbolic {
+    pub(crate) fn new(pattern: &Pattern, plan: &Plan, order: Option<Vec<u32>>, negative: Vec<bool>) -> Self {
+        let n = pattern.order();
+        let a = Lower::new(pattern, order.as_deref());
+        let simplicial = SimplicialPlan::new(&a, 0..plan.simplicial);
+        let fronts = FrontPlan::new(&a, plan.simplicial..n, &plan.widths);
+        Symbolic { unknowns: n, order, a, negative, simplicial, fronts }
+    }
+}
+
+/// P A Pᵀ = L D Lᵀ, each connected component by the method that suits it.
+#[derive(Clone, Debug)]
+pub(crate) struct SparseLdl {
+    symbolic: Arc<Symbolic>,
+    simplicial: Simplicial,
+    fronts: Multifrontal,
+    /// x in the order of elimination.
+    x: Vec<f64>,
+}
+
+impl SparseLdl {
+    fn new(symbolic: Arc<Symbolic>) -> Self {
+        let x = symbolic.order.as_ref().map_or(Vec::new(), |order| vec![0.0; order.len()]);
+        SparseLdl {
+            simplicial: Simplicial::new(&symbolic.simplicial),
+            fronts: Multifrontal::new(&symbolic.fronts),
+            symbolic,
+            x,
+        }
+    }
+
+    fn factor(&mut self, values: &[f64], shift: f64) -> f64 {
+        let symbolic = &*self.symbolic;
+        let negative = &symbolic.negative;
+        let smallest = self.simplicial.factor(&symbolic.simplicial, &symbolic.a, negative, values, shift);
+        if smallest.is_nan() || smallest <= 0.0 {
+            return smallest;
+        }
+        let other = self.fronts.factor(&symbolic.fronts, negative, values, shift);
+        if other.is_nan() { other } else { smallest.min(other) }
+    }
+
+    fn solve(&mut self, x: &mut [f64]) {
+        let symbolic = &*self.symbolic;
+        let Some(order) = &symbolic.order else {
+            self.simplicial.solve(&symbolic.simplicial, x);
+            return self.fronts.solve(&symbolic.fronts, x);
+        };
+        for (y, &i) in self.x.iter_mut().zip(order) {
+            *y = x[i as usize];
+        }
+        self.simplicial.solve(&symbolic.simplicial, &mut self.x);
+        self.fronts.solve(&symbolic.fronts, &mut self.x);
+        for (y, &i) in self.x.iter().zip(order) {
+            x[i as usize] = *y;
         }
     }
 }

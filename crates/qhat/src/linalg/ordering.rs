@@ -1,104 +1,104 @@
 //! Minimum degree ordering: eliminate, again and again, the unknown that is coupled to the fewest others.
 //!
-//! Kept as a quotient graph: an eliminated unknown becomes an *element*, the clique of the unknowns it was coupled to, so
-//! that storage never grows beyond the input. Ties go to the lower index: the order depends on nothing but the pattern.
-//! Source: George and Liu, The evolution of the minimum degree ordering algorithm, SIAM Review 31 (1989).
+//! Kept as a quotient graph: a point is an *element*, the clique of the unknowns that touch it, and an eliminated unknown
+//! joins the elements it was in to one, so that storage never grows beyond the input. Ties go to the lower index: the order
+//! depends on nothing but the pattern. Source: George and Liu, The evolution of the minimum degree ordering algorithm, SIAM
+//! Review 31 (1989).
 
-use super::Pattern;
+use super::Incidence;
 use std::collections::BTreeSet;
 
-/// The order in which to eliminate the unknowns: `order[k]` is the k-th.
-pub(crate) fn minimum_degree(pattern: &Pattern) -> Vec<usize> {
-    let mut graph = QuotientGraph::new(pattern);
-    let mut queue: BTreeSet<(usize, usize)> = graph.degree.iter().copied().zip(0..).collect();
-    let mut order = Vec::with_capacity(pattern.order());
+/// The order in which to eliminate the first `free` unknowns (what comes after them stays and counts as a neighbour);
+/// `None` once more than `budget` neighbours were looked at.
+pub(crate) fn minimum_degree(incidence: &Incidence, free: usize, mut budget: usize) -> Option<Vec<u32>> {
+    let mut graph = QuotientGraph::new(incidence);
+    let mut degree: Vec<usize> = (0..free as u32).map(|i| graph.degree(i)).collect();
+    let mut queue: BTreeSet<(usize, u32)> = degree.iter().copied().zip(0..).collect();
+    let mut order = Vec::with_capacity(free);
     while let Some((_, pivot)) = queue.pop_first() {
         order.push(pivot);
-        let clique = graph.eliminate(pivot);
+        let mut clique = graph.eliminate(pivot);
+        clique.retain(|&i| (i as usize) < free);
         if clique.len() == queue.len() {
             // All that is left is one clique: any order of it is as good as any other.
-            order.extend(clique.iter().copied());
+            order.extend(clique);
             break;
         }
-        for &i in &clique {
-            let degree = graph.current_degree(i);
-            queue.remove(&(graph.degree[i], i));
-            queue.insert((degree, i));
-            graph.degree[i] = degree;
+        let before = graph.looked_at;
+        for i in clique {
+            let now = graph.degree(i);
+            queue.remove(&(degree[i as usize], i));
+            queue.insert((now, i));
+            degree[i as usize] = now;
         }
+        budget = budget.checked_sub(graph.looked_at - before)?;
     }
-    order
+    Some(order)
 }
 
 struct QuotientGraph {
-    /// Direct couplings of an unknown to unknowns, those inside a common element left out.
-    neighbours: Vec<Vec<usize>>,
     /// Elements that an unknown belongs to.
-    elements: Vec<Vec<usize>>,
-    /// The unknowns of an element, by the pivot it came from.
-    members: Vec<Vec<usize>>,
-    degree: Vec<usize>,
+    elements: Vec<Vec<u32>>,
+    /// The unknowns of an element: the points first, then the elements that pivots left.
+    members: Vec<Vec<u32>>,
+    points: usize,
     /// `mark[i] == stamp` says that i was seen in the present sweep.
     mark: Vec<usize>,
     stamp: usize,
+    looked_at: usize,
 }
 
 impl QuotientGraph {
-    fn new(pattern: &Pattern) -> Self {
-        let n = pattern.order();
-        let mut neighbours = vec![Vec::new(); n];
-        for i in 0..n {
-            for slot in pattern.start[i]..pattern.diagonal(i) {
-                let j = pattern.column[slot];
-                neighbours[i].push(j);
-                neighbours[j].push(i);
-            }
-        }
-        let degree = neighbours.iter().map(Vec::len).collect();
+    fn new(incidence: &Incidence) -> Self {
+        let (n, points) = (incidence.unknowns(), incidence.points());
+        let mut members: Vec<Vec<u32>> = (0..points as u32).map(|p| incidence.unknowns_at(p).to_vec()).collect();
+        members.resize(points + n, Vec::new());
         QuotientGraph {
-            neighbours,
-            elements: vec![Vec::new(); n],
-            members: vec![Vec::new(); n],
-            degree,
+            elements: (0..n as u32).map(|u| incidence.points_of(u).to_vec()).collect(),
+            members,
+            points,
             mark: vec![0; n],
             stamp: 0,
+            looked_at: 0,
         }
     }
 
     /// Turns an unknown into an element and returns its members, ascending.
-    fn eliminate(&mut self, pivot: usize) -> Vec<usize> {
+    fn eliminate(&mut self, pivot: u32) -> Vec<u32> {
         self.stamp += 1;
-        self.mark[pivot] = self.stamp;
+        self.mark[pivot as usize] = self.stamp;
         let mut clique = Vec::new();
-        let absorbed = std::mem::take(&mut self.elements[pivot]);
-        let lists = absorbed.iter().map(|&e| std::mem::take(&mut self.members[e]));
-        for i in lists.flatten().chain(std::mem::take(&mut self.neighbours[pivot])) {
-            if self.mark[i] != self.stamp {
-                self.mark[i] = self.stamp;
-                clique.push(i);
+        let absorbed = std::mem::take(&mut self.elements[pivot as usize]);
+        for &e in &absorbed {
+            for i in std::mem::take(&mut self.members[e as usize]) {
+                if self.mark[i as usize] != self.stamp {
+                    self.mark[i as usize] = self.stamp;
+                    clique.push(i);
+                }
             }
         }
         clique.sort_unstable();
+        let element = self.points as u32 + pivot;
         for &i in &clique {
-            let (mark, stamp) = (&self.mark, self.stamp);
-            self.neighbours[i].retain(|&j| mark[j] != stamp);
-            self.elements[i].retain(|e| !absorbed.contains(e));
-            self.elements[i].push(pivot);
+            self.elements[i as usize].retain(|e| !absorbed.contains(e));
+            self.elements[i as usize].push(element);
         }
-        self.members[pivot].clone_from(&clique);
+        self.members[element as usize].clone_from(&clique);
         clique
     }
 
-    /// Number of unknowns that i is coupled to, directly or through an element.
-    fn current_degree(&mut self, i: usize) -> usize {
+    /// Number of unknowns that i is coupled to.
+    fn degree(&mut self, i: u32) -> usize {
         self.stamp += 1;
-        self.mark[i] = self.stamp;
+        self.mark[i as usize] = self.stamp;
         let mut degree = 0;
-        let through_elements = self.elements[i].iter().flat_map(|&e| self.members[e].iter());
-        for &j in through_elements.chain(&self.neighbours[i]) {
-            if self.mark[j] != self.stamp {
-                self.mark[j] = self.stamp;
-                degree += 1;
+        for &e in &self.elements[i as usize] {
+            self.looked_at += self.members[e as usize].len();
+            for &j in &self.members[e as usize] {
+                if self.mark[j as usize] != self.stamp {
+                    self.mark[j as usize] = self.stamp;
+                    degree += 1;
+                }
             }
         }
         degree

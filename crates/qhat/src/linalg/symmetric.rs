@@ -1,5 +1,7 @@
 //! Symmetric sparse matrices: the lower triangle by rows, each row's columns ascending, its diagonal last.
 
+use super::Incidence;
+
 /// Which entries of the lower triangle may be nonzero. Every diagonal entry is present.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Pattern {
@@ -9,6 +11,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// From the columns of each row; the diagonal and the order are seen to here.
+    #[allow(dead_code, reason = "for matrices that do not come from a System: tests, so far")]
     pub(crate) fn from_rows(rows: Vec<Vec<usize>>) -> Self {
         let mut pattern = Pattern { start: vec![0], column: Vec::new() };
         for (i, mut columns) in rows.into_iter().enumerate() {
@@ -17,6 +20,19 @@ impl Pattern {
             columns.dedup();
             columns.push(i);
             pattern.column.extend(columns);
+            pattern.start.push(pattern.column.len());
+        }
+        pattern
+    }
+
+    /// The coupling matrix of unknowns that share points.
+    pub(crate) fn of_incidence(incidence: &Incidence) -> Self {
+        let mut pattern = Pattern { start: vec![0], column: Vec::new() };
+        let mut columns = Vec::new();
+        for k in 0..incidence.unknowns() as u32 {
+            incidence.columns(k, &mut columns);
+            pattern.column.extend(columns.iter().map(|&column| column as usize));
+            pattern.column.push(k as usize);
             pattern.start.push(pattern.column.len());
         }
         pattern
@@ -101,5 +117,51 @@ impl SymmetricMatrix {
     /// out = A x.
     pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
         self.pattern.multiply(&self.values, x, out);
+    }
+}
+
+/// The lower triangle of P A Pᵀ by rows: the columns of each and the slots of A their values come from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lower {
+    start: Vec<usize>,
+    entry: Vec<(u32, u32)>,
+}
+
+impl Lower {
+    /// `order[k]` is the unknown that is eliminated k-th; without one, as they are numbered.
+    pub(crate) fn new(pattern: &Pattern, order: Option<&[u32]>) -> Self {
+        let n = pattern.order();
+        let mut place: Vec<u32> = (0..n as u32).collect();
+        for (k, &i) in order.unwrap_or_default().iter().enumerate() {
+            place[i as usize] = k as u32;
+        }
+        let mut start = vec![0; n + 1];
+        let entries = || (0..n).flat_map(|i| (pattern.start[i]..pattern.start[i + 1]).map(move |slot| (i, slot)));
+        let at = |(i, slot): (usize, usize)| {
+            let (k, l) = (place[i], place[pattern.column[slot]]);
+            (k.max(l) as usize, k.min(l))
+        };
+        for e in entries() {
+            start[at(e).0 + 1] += 1;
+        }
+        for k in 0..n {
+            start[k + 1] += start[k];
+        }
+        let mut next = start.clone();
+        let mut entry = vec![(0, 0); pattern.len()];
+        for e in entries() {
+            let (row, column) = at(e);
+            entry[next[row]] = (column, e.1 as u32);
+            next[row] += 1;
+        }
+        for k in 0..n {
+            entry[start[k]..start[k + 1]].sort_unstable();
+        }
+        Lower { start, entry }
+    }
+
+    #[inline(always)]
+    pub(crate) fn row(&self, k: usize) -> &[(u32, u32)] {
+        &self.entry[self.start[k]..self.start[k + 1]]
     }
 }

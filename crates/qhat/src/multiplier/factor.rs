@@ -13,7 +13,8 @@
 //! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
 //! how far the rows contradict each other.
 
-use crate::linalg::{Factor, Pattern, rank};
+use super::MatrixStructure;
+use crate::linalg::{Factor, rank};
 
 /// A pivot of the scaled matrix below this is taken for zero. Pivots of regular systems are about the smallest ratio of
 /// inverse masses (1e-9 for a load of a billion beads); roundoff leaves some 1e-15 of a zero.
@@ -36,7 +37,7 @@ const PASSES: usize = 10;
 /// Above this order the rank is not computed (the work grows with its cube), only that it is deficient is said.
 const RANK_UP_TO: usize = 1200;
 
-/// (A + ε I), scaled and factored.
+/// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
 #[derive(Clone, Debug)]
 pub(crate) struct MultiplierSolver {
     factor: Factor,
@@ -45,6 +46,8 @@ pub(crate) struct MultiplierSolver {
     scaled: Vec<f64>,
     /// Whether G is in use.
     pub(crate) deficient: bool,
+    /// Whether M has a null space. Where there are hubs, G may be needed although it has none.
+    pub(crate) singular: bool,
     dropped: usize,
     /// Relative part of the last right side that no λ can meet.
     pub(crate) contradiction: f64,
@@ -56,13 +59,14 @@ pub(crate) struct MultiplierSolver {
 }
 
 impl MultiplierSolver {
-    pub(crate) fn new(pattern: &Pattern) -> Self {
-        let m = pattern.order();
+    pub(crate) fn new(matrix: &MatrixStructure) -> Self {
+        let m = matrix.pattern.order();
         MultiplierSolver {
-            factor: Factor::new(pattern),
+            factor: Factor::with(&matrix.symbolic),
             scale: vec![0.0; m],
-            scaled: vec![0.0; pattern.len()],
+            scaled: vec![0.0; matrix.pattern.len()],
             deficient: false,
+            singular: false,
             dropped: 0,
             contradiction: 0.0,
             factorizations: 0,
@@ -74,11 +78,23 @@ impl MultiplierSolver {
     }
 
     /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) are left out: their λ is zero.
-    pub(crate) fn factor(&mut self, pattern: &Pattern, A: &[f64], epsilon: f64, inert: &[bool]) {
+    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64) {
+        let pattern = &matrix.pattern;
+        // diag(A + ε I), to which hubs add their part.
+        for i in 0..self.r.len() {
+            self.r[i] = A[pattern.diagonal(i)] + epsilon;
+        }
+        for on_hub in &matrix.on_hubs {
+            self.r[on_hub.row as usize] += A[on_hub.slot as usize] * A[on_hub.slot as usize];
+        }
         self.dropped = 0;
-        for i in 0..self.scale.len() {
-            let diagonal = A[pattern.diagonal(i)] + epsilon;
-            let takes_part = !inert[i] && diagonal > 0.0;
+        for (i, &row) in matrix.order.iter().enumerate() {
+            if matrix.is_hub(row) {
+                self.scale[i] = 1.0;
+                continue;
+            }
+            let diagonal = self.r[i];
+            let takes_part = !matrix.inert[row as usize] && diagonal > 0.0;
             self.scale[i] = if takes_part { 1.0 / diagonal.sqrt() } else { 0.0 };
             self.dropped += usize::from(!takes_part);
         }
@@ -89,55 +105,69 @@ impl MultiplierSolver {
             }
             self.scaled[diagonal] = 1.0;
         }
+        if !matrix.on_hubs.is_empty() {
+            for i in 0..self.scale.len() {
+                let diagonal = pattern.diagonal(i);
+                if matrix.is_hub(matrix.order[i]) {
+                    self.scaled[diagonal] = A[diagonal];
+                } else if self.scale[i] > 0.0 && self.r[i] != A[diagonal] + epsilon {
+                    self.scaled[diagonal] = (A[diagonal] + epsilon) / self.r[i];
+                }
+            }
+        }
         self.deficient = false;
+        self.singular = false;
         self.factorizations += 1;
         let smallest = self.factor.factor(pattern, &self.scaled, 0.0);
         if smallest.is_nan() || smallest < TINY_PIVOT {
-            self.regularize(pattern);
+            self.regularize(matrix);
         }
     }
 
     /// Goes over to G, unless it is in use.
-    pub(crate) fn regularize(&mut self, pattern: &Pattern) {
+    pub(crate) fn regularize(&mut self, matrix: &MatrixStructure) {
         if self.deficient {
             return;
         }
         self.deficient = true;
         self.factorizations += 1;
-        self.factor.factor(pattern, &self.scaled, REGULARIZATION);
+        self.factor.factor(&matrix.pattern, &self.scaled, REGULARIZATION);
+        self.singular = matrix.on_hubs.is_empty() || self.has_null_space(matrix);
     }
 
     /// λ ← (A + ε I)⁻¹ b, or the least-norm λ that comes nearest where the matrix is singular.
-    pub(crate) fn solve(&mut self, pattern: &Pattern, b: &[f64], lambda: &mut [f64]) {
-        for i in 0..b.len() {
-            self.b[i] = self.scale[i] * b[i];
+    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], lambda: &mut [f64]) {
+        for (i, &row) in matrix.order.iter().enumerate() {
+            self.b[i] = if matrix.is_hub(row) { 0.0 } else { self.scale[i] * b[row as usize] };
         }
         self.contradiction = 0.0;
-        if !self.deficient && !self.solve_plain(pattern) {
-            self.regularize(pattern);
+        if !self.deficient && !self.solve_plain(matrix) {
+            self.regularize(matrix);
         }
         if self.deficient {
-            self.solve_regularized(pattern);
+            self.solve_regularized(matrix);
         }
-        for i in 0..b.len() {
-            lambda[i] = self.scale[i] * self.x[i];
+        for (i, &row) in matrix.order.iter().enumerate() {
+            if !matrix.is_hub(row) {
+                lambda[row as usize] = self.scale[i] * self.x[i];
+            }
         }
     }
 
     /// Whether the plain factor solved it.
-    fn solve_plain(&mut self, pattern: &Pattern) -> bool {
+    fn solve_plain(&mut self, matrix: &MatrixStructure) -> bool {
         self.x.copy_from_slice(&self.b);
         self.factor.solve(&mut self.x);
-        self.residual(pattern);
+        self.residual(matrix);
         let (residual, size) = (largest(&self.r), largest(&self.b));
         // A right side that is not finite is not the matrix's fault; the step will report it.
         residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
     }
 
-    fn solve_regularized(&mut self, pattern: &Pattern) {
+    fn solve_regularized(&mut self, matrix: &MatrixStructure) {
         let size = largest(&self.b);
         self.y.copy_from_slice(&self.b);
-        self.keep_null_space(size);
+        self.keep_null_space(matrix, size);
         for i in 0..self.b.len() {
             self.b[i] -= self.y[i];
         }
@@ -146,7 +176,7 @@ impl MultiplierSolver {
         self.x.fill(0.0);
         let mut last = f64::INFINITY;
         for _ in 0..PASSES {
-            self.residual(pattern);
+            self.residual(matrix);
             let residual = largest(&self.r);
             if residual.is_nan() || residual <= REFINED * size || residual > 0.5 * last {
                 break;
@@ -158,20 +188,21 @@ impl MultiplierSolver {
             }
         }
         self.y.copy_from_slice(&self.x);
-        self.keep_null_space(largest(&self.x));
+        self.clear_hubs(matrix);
+        self.keep_null_space(matrix, largest(&self.y));
         for i in 0..self.x.len() {
             self.x[i] -= self.y[i];
         }
     }
 
     /// y ← null(y): P until nothing more goes; what goes is measured against `size`, the largest |y| at the start.
-    fn keep_null_space(&mut self, size: f64) {
+    fn keep_null_space(&mut self, matrix: &MatrixStructure, size: f64) {
         for _ in 0..PASSES {
             self.r.copy_from_slice(&self.y);
             self.factor.solve(&mut self.r);
             let mut gone = 0.0_f64;
-            for (y, r) in self.y.iter_mut().zip(&self.r) {
-                let kept = REGULARIZATION * r;
+            for (i, (y, r)) in self.y.iter_mut().zip(&self.r).enumerate() {
+                let kept = if matrix.is_hub(matrix.order[i]) { 0.0 } else { REGULARIZATION * r };
                 gone = gone.max((*y - kept).abs());
                 *y = kept;
             }
@@ -181,38 +212,77 @@ impl MultiplierSolver {
         }
     }
 
+    /// Whether null(·) leaves anything of a vector that is like no other. The part of M that a hub's unknowns couple may be
+    /// singular where M is not: three rods in one plane hold a particle up to the motion of their other ends.
+    fn has_null_space(&mut self, matrix: &MatrixStructure) -> bool {
+        for (i, y) in self.y.iter_mut().enumerate() {
+            *y = (i as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        }
+        self.clear_hubs(matrix);
+        self.keep_null_space(matrix, 1.0);
+        // Of a direction with σ > 1e-6 ten passes leave 1e-20; of the null space they leave what there was.
+        largest(&self.y) > 1e-9
+    }
+
+    /// y ← 0 where a hub's unknowns are: they are no part of the rows' space.
+    fn clear_hubs(&mut self, matrix: &MatrixStructure) {
+        if !matrix.on_hubs.is_empty() {
+            for (y, &row) in self.y.iter_mut().zip(&matrix.order) {
+                *y = if matrix.is_hub(row) { 0.0 } else { *y };
+            }
+        }
+    }
+
     /// r ← b − M x.
-    fn residual(&mut self, pattern: &Pattern) {
-        pattern.multiply(&self.scaled, &self.x, &mut self.r);
+    fn residual(&mut self, matrix: &MatrixStructure) {
+        matrix.pattern.multiply(&self.scaled, &self.x, &mut self.r);
         for i in 0..self.r.len() {
             self.r[i] = self.b[i] - self.r[i];
         }
     }
 
-    /// Whether a row took no part in the last factorization.
-    pub(crate) fn is_left_out(&self, row: usize) -> bool {
-        self.scale[row] == 0.0
+    /// The rows that took no part in the last factorization, ascending.
+    pub(crate) fn left_out(&self, matrix: &MatrixStructure) -> Vec<usize> {
+        let all = matrix.order.iter().zip(&self.scale);
+        let mut rows: Vec<usize> = all.filter(|&(_, &scale)| scale == 0.0).map(|(&row, _)| row as usize).collect();
+        rows.sort_unstable();
+        rows
     }
 
     /// Rank of A at the last factorization; `None` where computing it would take too long.
-    pub(crate) fn rank(&self, pattern: &Pattern) -> Option<usize> {
-        let m = pattern.order();
-        if !self.deficient {
+    pub(crate) fn rank(&self, matrix: &MatrixStructure) -> Option<usize> {
+        let pattern = &matrix.pattern;
+        let m = matrix.inert.len();
+        if !self.singular {
             return Some(m - self.dropped);
         }
         if m > RANK_UP_TO {
             return None;
         }
-        let mut dense = vec![0.0; m * m];
-        for i in 0..m {
+        let n = pattern.order();
+        let mut dense = vec![0.0; n * n];
+        for i in 0..n {
             for slot in pattern.start[i]..pattern.start[i + 1] {
                 let j = pattern.column[slot];
-                dense[i * m + j] = self.scaled[slot];
-                dense[j * m + i] = self.scaled[slot];
+                dense[i * n + j] = self.scaled[slot];
+                dense[j * n + i] = self.scaled[slot];
             }
-            dense[i * m + i] = if self.scale[i] > 0.0 { 1.0 } else { 0.0 };
         }
-        Some(rank(m, dense))
+        // Hubs are eliminated: what they couple is added up.
+        for h in (0..n).filter(|&h| matrix.is_hub(matrix.order[h])) {
+            let column: Vec<f64> = (0..n).map(|i| dense[i * n + h]).collect();
+            for i in (0..n).filter(|&i| i != h && column[i] != 0.0) {
+                for j in 0..n {
+                    dense[i * n + j] += column[i] * column[j];
+                }
+            }
+            dense[h * n..(h + 1) * n].fill(0.0);
+            (0..n).for_each(|i| dense[i * n + h] = 0.0);
+        }
+        for i in (0..n).filter(|&i| !matrix.is_hub(matrix.order[i])) {
+            dense[i * n + i] = if self.scale[i] > 0.0 { 1.0 } else { 0.0 };
+        }
+        Some(rank(n, dense))
     }
 }
 

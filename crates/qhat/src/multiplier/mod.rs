@@ -8,9 +8,11 @@ mod factor;
 mod matrix;
 mod reaction;
 mod rhs;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use factor::MultiplierSolver;
-pub(crate) use matrix::MatrixStructure;
+pub(crate) use matrix::{MatrixPlan, MatrixStructure};
 pub(crate) use rhs::RightHandSide;
 
 use crate::constraint::Rows;
@@ -25,6 +27,7 @@ pub(crate) struct Equation {
     pub(crate) Q: Vec<f64>,
     pub(crate) WQ: Vec<f64>,
     pub(crate) rows: Rows,
+    /// In the order of elimination.
     pub(crate) A: Vec<f64>,
     pub(crate) b: RightHandSide,
     pub(crate) solver: MultiplierSolver,
@@ -42,7 +45,7 @@ impl Equation {
             rows: system.empty_rows(),
             A: vec![0.0; system.matrix.pattern.len()],
             b: RightHandSide::new(m),
-            solver: MultiplierSolver::new(&system.matrix.pattern),
+            solver: MultiplierSolver::new(&system.matrix),
             lambda: vec![0.0; m],
             Q_hat: vec![0.0; coordinates],
             qdd: vec![0.0; coordinates],
@@ -64,7 +67,7 @@ impl Equation {
         if !is_factored {
             self.factor::<D>(system, feedback.diagonal_drag);
         }
-        self.solver.solve(&system.matrix.pattern, &self.b.sum, &mut self.lambda);
+        self.solver.solve(&system.matrix, &self.b.sum, &mut self.lambda);
         let s = 1.0 - feedback.elasticity;
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
         reaction::accelerations::<D>(&system.inverse_mass, &self.Q, &self.Q_hat, &mut self.qdd);
@@ -88,19 +91,18 @@ impl Equation {
     /// A = J W Jᵀ and the factor of A + ε I.
     pub(crate) fn factor<const D: usize>(&mut self, system: &System, epsilon: f64) {
         system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-        self.solver.factor(&system.matrix.pattern, &self.A, epsilon, &system.matrix.inert);
+        self.solver.factor(&system.matrix, &self.A, epsilon);
     }
 
     /// What a user should know of the last factorization.
     pub(crate) fn warnings(&self, system: &System) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        let without = |row: &usize| self.solver.is_left_out(*row) && !system.matrix.inert[*row];
-        let rows: Vec<String> =
-            (0..system.row_count()).filter(without).map(|row| system.row_names[row].clone()).collect();
+        let rows = self.solver.left_out(&system.matrix).into_iter().filter(|&row| !system.matrix.inert[row]);
+        let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });
         }
-        if self.solver.deficient {
+        if self.solver.singular {
             warnings.push(Warning::Singular);
         }
         warnings

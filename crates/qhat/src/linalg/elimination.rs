@@ -1,0 +1,163 @@
+//! What elimination in a given order leads to: the elimination tree, the entries of L, and the columns that go together.
+//!
+//! Column j of L has its first entry below the diagonal in row parent(j). The columns of a *front* are eliminated as one dense
+//! block. Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. 11 (1990); Ashcraft and
+//! Grimes, The influence of relaxed supernode partitions on the multifrontal method, ACM TOMS 15 (1989).
+
+use super::Incidence;
+
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// The elimination tree and the number of entries below the diagonal in each column of L.
+#[derive(Clone, Debug)]
+pub(crate) struct Elimination {
+    pub(crate) parent: Vec<u32>,
+    pub(crate) below: Vec<u32>,
+}
+
+impl Elimination {
+    /// Of the coupling matrix, unknowns in the order of their numbers.
+    pub(crate) fn new(incidence: &Incidence) -> Self {
+        let n = incidence.unknowns();
+        let (mut parent, mut seen, mut below) = (vec![NONE; n], vec![NONE; n], vec![0; n]);
+        let mut columns = Vec::new();
+        for k in 0..n as u32 {
+            seen[k as usize] = k;
+            incidence.columns(k, &mut columns);
+            for &column in &columns {
+                let mut i = column as usize;
+                while seen[i] != k {
+                    if parent[i] == NONE {
+                        parent[i] = k;
+                    }
+                    below[i] += 1;
+                    seen[i] = k;
+                    i = parent[i] as usize;
+                }
+            }
+        }
+        Elimination { parent, below }
+    }
+
+    /// Entries of L, its diagonal among them.
+    pub(crate) fn entries(&self) -> u64 {
+        self.below.iter().map(|&c| 1 + u64::from(c)).sum()
+    }
+
+    /// Operations of one factorization.
+    pub(crate) fn factor_flops(&self) -> u64 {
+        self.below.iter().map(|&c| u64::from(c) * (u64::from(c) + 2)).sum()
+    }
+
+    /// The unknowns with every subtree in one piece, children before parents.
+    pub(crate) fn postorder(&self) -> Vec<u32> {
+        let single = |j: usize| Front { columns: vec![j as u32], below: self.below[j], zeros: 0 };
+        let fronts: Vec<Front> = (0..self.parent.len()).map(single).collect();
+        postorder(&fronts, &self.parent).0
+    }
+
+    /// The unknowns in the order of fronts, and how many columns each front has.
+    pub(crate) fn fronts(&self) -> (Vec<u32>, Vec<u32>) {
+        let n = self.parent.len();
+        let mut fronts: Vec<Front> = Vec::with_capacity(n);
+        let mut children: Vec<Vec<u32>> = Vec::new();
+        let mut waiting: Vec<Vec<u32>> = vec![Vec::new(); n];
+        for j in 0..n {
+            let mut front = Front { columns: vec![j as u32], below: self.below[j], zeros: 0 };
+            let mut kept = Vec::new();
+            let mut sons = std::mem::take(&mut waiting[j]);
+            // The son that fits best first: what it brings decides about the others.
+            sons.sort_by_key(|&s| (std::cmp::Reverse(fronts[s as usize].below), s));
+            for s in sons {
+                match fronts[s as usize].merged(&front) {
+                    Some(both) => {
+                        front = both;
+                        kept.append(&mut children[s as usize]);
+                        fronts[s as usize].columns = Vec::new();
+                    }
+                    None => kept.push(s),
+                }
+            }
+            let number = fronts.len() as u32;
+            if self.parent[j] != NONE {
+                waiting[self.parent[j] as usize].push(number);
+            }
+            fronts.push(front);
+            children.push(kept);
+        }
+        let mut parent = vec![NONE; fronts.len()];
+        for (f, sons) in children.iter().enumerate() {
+            for &s in sons {
+                parent[s as usize] = f as u32;
+            }
+        }
+        postorder(&fronts, &parent)
+    }
+}
+
+/// Columns that are eliminated together, with the entries below them that each then has.
+#[derive(Clone, Debug)]
+struct Front {
+    columns: Vec<u32>,
+    below: u32,
+    zeros: u64,
+}
+
+impl Front {
+    /// This front and its parent as one, if that is worth the zeros it brings.
+    fn merged(&self, parent: &Front) -> Option<Front> {
+        let (k, up) = (self.columns.len() as u64, parent.columns.len() as u64);
+        // The rows of a front lie among the columns and rows of its parent.
+        let zeros = self.zeros + parent.zeros + k * (up + u64::from(parent.below) - u64::from(self.below));
+        let columns = k + up;
+        let entries = columns * (columns + 1) / 2 + columns * u64::from(parent.below);
+        let share = zeros as f64 / entries as f64;
+        // Measured on nets of 32 to 316: half and twice of these cost within 5 % of the same.
+        let allowed = match columns {
+            ..=8 => 0.4,
+            ..=16 => 0.2,
+            ..=32 => 0.15,
+            ..=64 => 0.1,
+            _ => 0.05,
+        };
+        (zeros == self.zeros + parent.zeros || share <= allowed).then(|| Front {
+            columns: self.columns.iter().chain(&parent.columns).copied().collect(),
+            below: parent.below,
+            zeros,
+        })
+    }
+}
+
+/// The columns of all fronts that have any, subtree after subtree, and how many each front has.
+fn postorder(fronts: &[Front], parent: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let (mut first, mut next) = (vec![NONE; fronts.len()], vec![NONE; fronts.len()]);
+    let mut roots = Vec::new();
+    for f in (0..fronts.len()).rev() {
+        if fronts[f].columns.is_empty() {
+            continue;
+        }
+        match parent[f] {
+            NONE => roots.push(f as u32),
+            up => {
+                next[f] = first[up as usize];
+                first[up as usize] = f as u32;
+            }
+        }
+    }
+    let (mut order, mut widths) = (Vec::new(), Vec::new());
+    while let Some(root) = roots.pop() {
+        let mut stack = vec![root];
+        while let Some(&f) = stack.last() {
+            let child = first[f as usize];
+            if child == NONE {
+                order.extend(&fronts[f as usize].columns);
+                widths.push(fronts[f as usize].columns.len() as u32);
+                stack.pop();
+            } else {
+                first[f as usize] = next[child as usize];
+                stack.push(child);
+            }
+        }
+    }
+    (order, widths)
+}

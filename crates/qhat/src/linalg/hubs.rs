@@ -1,0 +1,122 @@
+//! Hubs: points that very many unknowns touch.
+//!
+//! A point adds B W Bᵀ to the matrix, a clique of all that touch it. Kept as unknowns of its own, a = W Bᵀ x, it adds only B:
+//!
+//! ```text
+//! (A′ + B W Bᵀ) x = b   ⇔   [ A′   B  ] [x]   [b]
+//!                           [ Bᵀ −W⁻¹ ] [a] = [0]
+//! ```
+//!
+//! This matrix is quasi-definite: any order of elimination works, with negative pivots for a, as long as A′ is positive
+//! definite. Where it cannot be, because more unknowns hang on the other points of a piece than those can hold, some of them
+//! come after the hub. Source: Vanderbei, Symmetric quasidefinite matrices, SIAM J. Optim. 5 (1995).
+
+use super::Incidence;
+use super::plan::{HUB_FROM, Plan};
+use std::ops::Range;
+
+/// The points that are hubs, and the number of unknowns each then is: the dimension of space.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hubs {
+    pub(crate) points: Vec<u32>,
+    pub(crate) width: usize,
+}
+
+impl Hubs {
+    pub(crate) fn new(incidence: &Incidence, width: usize) -> Self {
+        let crowded = |&p: &u32| incidence.unknowns_at(p).len() >= HUB_FROM;
+        Hubs { points: (0..incidence.points() as u32).filter(crowded).collect(), width }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// How many unknowns the hubs add.
+    pub(crate) fn unknown_count(&self) -> usize {
+        self.points.len() * self.width
+    }
+
+    /// Which hub a point is.
+    pub(crate) fn number(&self, point: u32) -> Option<usize> {
+        self.points.binary_search(&point).ok()
+    }
+
+    /// The unknowns that a hub becomes.
+    pub(crate) fn unknowns(&self, incidence: &Incidence, hub: usize) -> Range<u32> {
+        let first = incidence.unknowns() + hub * self.width;
+        first as u32..(first + self.width) as u32
+    }
+
+    /// The unknowns and those of the hubs: in a hub's place, every unknown that touches it has a point with the hub's.
+    pub(crate) fn extended(&self, incidence: &Incidence) -> Incidence {
+        let mut points = incidence.points() as u32;
+        let mut of_hubs = vec![Vec::new(); self.points.len()];
+        let mut lists: Vec<Vec<u32>> = Vec::with_capacity(incidence.unknowns() + self.unknown_count());
+        for u in 0..incidence.unknowns() as u32 {
+            let mut list = Vec::new();
+            for &p in incidence.points_of(u) {
+                match self.number(p) {
+                    None => list.push(p),
+                    Some(hub) => {
+                        list.push(points);
+                        of_hubs[hub].push(points);
+                        points += 1;
+                    }
+                }
+            }
+            lists.push(list);
+        }
+        for list in of_hubs {
+            lists.extend(std::iter::repeat_n(list, self.width));
+        }
+        Incidence::new(points as usize, lists.into_iter())
+    }
+
+    /// The hubs that some unknowns touch, ascending.
+    pub(crate) fn among(&self, incidence: &Incidence, unknowns: &[u32]) -> Vec<usize> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let points = unknowns.iter().flat_map(|&u| incidence.points_of(u));
+        let mut hubs: Vec<usize> = points.filter_map(|&p| self.number(p)).collect();
+        hubs.sort_unstable();
+        hubs.dedup();
+        hubs
+    }
+
+    /// Order of elimination of a component, by places in `unknowns` and then the numbers of its hubs' unknowns: what hangs
+    /// on other points, the hubs, what would make A′ singular.
+    pub(crate) fn order(&self, incidence: &Incidence, unknowns: &[u32], hubs: Range<u32>) -> Vec<u32> {
+        let inner = |u: u32| incidence.points_of(u).iter().copied().filter(|&p| self.number(p).is_none());
+        let rest = Incidence::new(incidence.points(), unknowns.iter().map(|&u| inner(u)));
+        let late = self.late(incidence, unknowns, &rest);
+        let plan = Plan::new(&rest);
+        let (mut order, mut last) = (Vec::with_capacity(unknowns.len() + hubs.len()), Vec::new());
+        for k in plan.order {
+            if late[k as usize] { last.push(k) } else { order.push(k) }
+        }
+        order.extend(hubs);
+        order.append(&mut last);
+        order
+    }
+
+    /// Which unknowns come after the hubs: in each piece that is left without hubs, as many of those that touch one as there
+    /// are unknowns beyond `width` for each point.
+    fn late(&self, incidence: &Incidence, unknowns: &[u32], rest: &Incidence) -> Vec<bool> {
+        let mut late = vec![false; unknowns.len()];
+        let mut counted = vec![false; rest.points()];
+        for (_, piece) in super::plan::components(rest) {
+            let mut points = 0;
+            for &p in piece.iter().flat_map(|&u| rest.points_of(u)) {
+                points += usize::from(!std::mem::replace(&mut counted[p as usize], true));
+            }
+            let beyond = piece.len().saturating_sub(points * self.width);
+            let at_hub = |&&k: &&u32| rest.points_of(k).len() < incidence.points_of(unknowns[k as usize]).len();
+            for &k in piece.iter().filter(at_hub).take(beyond) {
+                late[k as usize] = true;
+            }
+        }
+        late
+    }
+}
