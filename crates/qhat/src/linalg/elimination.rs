@@ -115,9 +115,9 @@ impl Front {
         // Measured on nets of 32 to 316: half and twice of these cost within 5 % of the same.
         let allowed = match columns {
             ..=8 => 0.4,
-            ..=16 => 0.2,
-            ..=32 => 0.15,
-            ..=64 => 0.1,
+            9..=16 => 0.2,
+            17..=32 => 0.15,
+            33..=64 => 0.1,
             _ => 0.05,
         };
         (zeros == self.zeros + parent.zeros || share <= allowed).then(|| Front {

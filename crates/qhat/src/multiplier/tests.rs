@@ -33,7 +33,7 @@ fn chain(links: usize) -> (System, State) {
 /// A Warren truss, one end pinned and one on a rod to the ground.
 fn truss(panels: usize) -> (System, State) {
     let mut builder = plane();
-    let place = |i: usize| [i as f64 * 0.5, if i % 2 == 0 { 0.0 } else { 0.8 }];
+    let place = |i: usize| [i as f64 * 0.5, if i.is_multiple_of(2) { 0.0 } else { 0.8 }];
     let ids: Vec<ParticleId> = (0..=2 * panels).map(|i| add(&mut builder, place(i), i == 0)).collect();
     let ground = add(&mut builder, [panels as f64, -1.0], true);
     rod(&mut builder, ids[2 * panels], ground, 1.0);
@@ -137,11 +137,13 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
     );
 }
 
+type Case<'a> = (&'a str, &'a dyn Fn() -> (System, State));
+
 #[test]
 #[ignore = "a measurement, not a check"]
 fn timed_solves() {
     let only = std::env::var("QHAT_TIMED").unwrap_or_default();
-    let cases: [(&str, &dyn Fn() -> (System, State)); 13] = [
+    let cases: [Case; 13] = [
         ("chain100", &|| chain(100)),
         ("chain1e6", &|| chain(1_000_000)),
         ("truss20", &|| truss(20)),
