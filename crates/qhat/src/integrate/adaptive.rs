@@ -193,15 +193,14 @@ pub(super) fn begin<const D: usize>(
     let is_factored = workspace.factored_at == state.q;
     let equation = &mut workspace.equation;
     // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
-    if is_factored && equation.solver.deficient == carry.deficient {
+    if is_factored && !equation.solver.deficient && !carry.deficient {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd };
         equation.apply_forces(system, motion);
         equation.constrain(system, motion);
     } else {
+        // What was singular in the last frame is asked anew.
+        equation.solver.stays_deficient = false;
         return_to::<D>(system, state, equation);
-        if carry.deficient {
-            equation.solver.regularize(&system.matrix);
-        }
     }
     carry.lambda
 }

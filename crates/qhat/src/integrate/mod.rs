@@ -18,7 +18,7 @@ mod symplectic_euler;
 use crate::error::StepError;
 use crate::lanes::Lanes;
 use crate::measure::{self, Drift};
-use crate::multiplier::Equation;
+use crate::multiplier::{Equation, Multipliers};
 use crate::point::Motion;
 use crate::report::{Projection, StepReport};
 use crate::settings::{Feedback, Integrator, Settings};
@@ -68,7 +68,10 @@ impl Workspace {
     pub(crate) fn solve<const D: usize>(&mut self, system: &System, state: &State, feedback: &Feedback) -> &Equation {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd };
         let is_factored = feedback.diagonal_drag == 0.0 && self.factored_at == state.q;
-        self.equation.solve(system, motion, feedback, is_factored);
+        if !is_factored {
+            self.equation.solver.stays_deficient = false;
+        }
+        self.equation.solve(system, motion, feedback, is_factored, Multipliers::Least);
         self.factored_at.clear();
         if feedback.diagonal_drag == 0.0 {
             self.factored_at.extend_from_slice(&state.q);

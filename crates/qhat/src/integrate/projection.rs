@@ -11,7 +11,7 @@
 use super::Workspace;
 use crate::constraint::Jacobian;
 use crate::error::StepError;
-use crate::multiplier::Equation;
+use crate::multiplier::{Equation, Multipliers};
 use crate::point::{Motion, add, block, dot, scaled};
 use crate::report::Projection;
 use crate::settings::Settings;
@@ -71,7 +71,7 @@ fn positions<const D: usize>(
             return Ok((before, iteration));
         }
         equation.factor::<D>(system, 0.0);
-        equation.solver.solve(&system.matrix, &equation.rows.C, &mut delta);
+        equation.solver.solve(&system.matrix, &equation.rows.C, Multipliers::Any, &mut delta);
         let J = equation.rows.J.clone();
         start.copy_from_slice(q);
         let mut fraction = 1.0;
@@ -106,7 +106,7 @@ fn velocities<const D: usize>(system: &System, equation: &mut Equation, q: &[f64
     if rate * system.extent > CONSISTENT_RATE * fastest {
         equation.factor::<D>(system, 0.0);
         let mut nu = vec![0.0; equation.rows.Cd.len()];
-        equation.solver.solve(&system.matrix, &equation.rows.Cd, &mut nu);
+        equation.solver.solve(&system.matrix, &equation.rows.Cd, Multipliers::Any, &mut nu);
         add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &nu, -1.0, qd);
     }
 }

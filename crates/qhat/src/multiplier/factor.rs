@@ -11,7 +11,7 @@
 //! ```
 //!
 //! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
-//! how far the rows contradict each other.
+//! how far the rows contradict each other. A step that only wants the force leaves both null(·) out.
 
 use super::MatrixStructure;
 use crate::linalg::{Factor, rank};
@@ -37,6 +37,19 @@ const PASSES: usize = 10;
 /// Above this order the rank is not computed (the work grows with its cube), only that it is deficient is said.
 const RANK_UP_TO: usize = 1200;
 
+/// A residual of the refinement above this, relative, means that the rows contradict each other by more than roundoff. Without
+/// null(b) taken out, x has then grown by 1/δ times as much along the null space, and Jᵀ would have to cancel it.
+const CONTRADICTION: f64 = 1e-8;
+
+/// Which of the λ that do the same a solution is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Multipliers {
+    /// The least, for people to look at.
+    Least,
+    /// Any: only the force they make is wanted.
+    Any,
+}
+
 /// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
 #[derive(Clone, Debug)]
 pub(crate) struct MultiplierSolver {
@@ -46,6 +59,8 @@ pub(crate) struct MultiplierSolver {
     scaled: Vec<f64>,
     /// Whether G is in use.
     pub(crate) deficient: bool,
+    /// Whether to take G at once the next time: until someone asks anew, what was singular is taken to stay so.
+    pub(crate) stays_deficient: bool,
     /// Whether M has a null space. Where there are hubs, G may be needed although it has none.
     pub(crate) singular: bool,
     dropped: usize,
@@ -66,6 +81,7 @@ impl MultiplierSolver {
             scale: vec![0.0; m],
             scaled: vec![0.0; matrix.pattern.len()],
             deficient: false,
+            stays_deficient: false,
             singular: false,
             dropped: 0,
             contradiction: 0.0,
@@ -116,6 +132,9 @@ impl MultiplierSolver {
             }
         }
         self.deficient = false;
+        if self.stays_deficient {
+            return self.regularize(matrix);
+        }
         self.singular = false;
         self.factorizations += 1;
         let smallest = self.factor.factor(pattern, &self.scaled, 0.0);
@@ -129,14 +148,16 @@ impl MultiplierSolver {
         if self.deficient {
             return;
         }
-        self.deficient = true;
+        let is_news = !self.stays_deficient;
+        (self.deficient, self.stays_deficient) = (true, true);
         self.factorizations += 1;
         self.factor.factor(&matrix.pattern, &self.scaled, REGULARIZATION);
-        self.singular = matrix.on_hubs.is_empty() || self.has_null_space(matrix);
+        // Which of the two a hub means is asked once.
+        self.singular = matrix.on_hubs.is_empty() || if is_news { self.has_null_space(matrix) } else { self.singular };
     }
 
-    /// λ ← (A + ε I)⁻¹ b, or the least-norm λ that comes nearest where the matrix is singular.
-    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], lambda: &mut [f64]) {
+    /// λ ← (A + ε I)⁻¹ b, or a λ that comes nearest where the matrix is singular.
+    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], wanted: Multipliers, lambda: &mut [f64]) {
         for (i, &row) in matrix.order.iter().enumerate() {
             self.b[i] = if matrix.is_hub(row) { 0.0 } else { self.scale[i] * b[row as usize] };
         }
@@ -144,8 +165,8 @@ impl MultiplierSolver {
         if !self.deficient && !self.solve_plain(matrix) {
             self.regularize(matrix);
         }
-        if self.deficient {
-            self.solve_regularized(matrix);
+        if self.deficient && (wanted == Multipliers::Least || !self.refine(matrix)) {
+            self.solve_least(matrix);
         }
         for (i, &row) in matrix.order.iter().enumerate() {
             if !matrix.is_hub(row) {
@@ -164,7 +185,7 @@ impl MultiplierSolver {
         residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
     }
 
-    fn solve_regularized(&mut self, matrix: &MatrixStructure) {
+    fn solve_least(&mut self, matrix: &MatrixStructure) {
         let size = largest(&self.b);
         self.y.copy_from_slice(&self.b);
         self.keep_null_space(matrix, size);
@@ -172,27 +193,36 @@ impl MultiplierSolver {
             self.b[i] -= self.y[i];
         }
         self.contradiction = if size > 0.0 { largest(&self.y) / size } else { 0.0 };
-
-        self.x.fill(0.0);
-        let mut last = f64::INFINITY;
-        for _ in 0..PASSES {
-            self.residual(matrix);
-            let residual = largest(&self.r);
-            if residual.is_nan() || residual <= REFINED * size || residual > 0.5 * last {
-                break;
-            }
-            last = residual;
-            self.factor.solve(&mut self.r);
-            for i in 0..self.x.len() {
-                self.x[i] += self.r[i];
-            }
-        }
+        self.refine(matrix);
         self.y.copy_from_slice(&self.x);
         self.clear_hubs(matrix);
         self.keep_null_space(matrix, largest(&self.y));
         for i in 0..self.x.len() {
             self.x[i] -= self.y[i];
         }
+    }
+
+    /// x ← x + G (b − M x) from 0; whether b was met but for roundoff.
+    fn refine(&mut self, matrix: &MatrixStructure) -> bool {
+        let size = largest(&self.b);
+        self.x.fill(0.0);
+        self.r.copy_from_slice(&self.b);
+        let mut reached = size;
+        for _ in 0..PASSES {
+            if reached.is_nan() || reached <= REFINED * size {
+                break;
+            }
+            self.factor.solve(&mut self.r);
+            for i in 0..self.x.len() {
+                self.x[i] += self.r[i];
+            }
+            self.residual(matrix);
+            let last = std::mem::replace(&mut reached, largest(&self.r));
+            if reached > 0.5 * last {
+                break;
+            }
+        }
+        reached <= CONTRADICTION * size
     }
 
     /// y ← null(y): P until nothing more goes; what goes is measured against `size`, the largest |y| at the start.

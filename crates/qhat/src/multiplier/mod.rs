@@ -11,7 +11,7 @@ mod rhs;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use factor::MultiplierSolver;
+pub(crate) use factor::{MultiplierSolver, Multipliers};
 pub(crate) use matrix::{MatrixPlan, MatrixStructure};
 pub(crate) use rhs::RightHandSide;
 
@@ -60,6 +60,7 @@ impl Equation {
         motion: Motion<'_, D>,
         feedback: &Feedback,
         is_factored: bool,
+        wanted: Multipliers,
     ) {
         self.apply_forces(system, motion);
         self.constrain(system, motion);
@@ -67,7 +68,7 @@ impl Equation {
         if !is_factored {
             self.factor::<D>(system, feedback.diagonal_drag);
         }
-        self.solver.solve(&system.matrix, &self.b.sum, &mut self.lambda);
+        self.solver.solve(&system.matrix, &self.b.sum, wanted, &mut self.lambda);
         let s = 1.0 - feedback.elasticity;
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
         reaction::accelerations::<D>(&system.inverse_mass, &self.Q, &self.Q_hat, &mut self.qdd);
