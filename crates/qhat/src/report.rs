@@ -64,6 +64,17 @@ pub enum Warning {
         /// Their names.
         rows: Vec<String>,
     },
+    /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
+    BudgetSpent {
+        /// t of the end of the step [s].
+        time: f64,
+        /// Newton iterations of the frame.
+        iterations: usize,
+        /// The worst row.
+        row: String,
+        /// What it is off by, relative to its own size.
+        relative: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -76,6 +87,10 @@ impl fmt::Display for Warning {
                 f,
                 "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it (diagonal drag hides this)",
                 rows.join(", ")
+            ),
+            Warning::BudgetSpent { time, iterations, row, relative } => write!(
+                f,
+                "the frame budget ran out at t = {time:.4} s after {iterations} Newton iterations: `{row}` is off by {relative:.1e} of its size"
             ),
         }
     }

@@ -1,7 +1,7 @@
 //! System: which particles, constraints and forces there are. What is connected to what never changes once it is built;
 //! the numbers of forces and feedback may.
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows, Softness};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
 use crate::multiplier::MatrixStructure;
@@ -124,6 +124,7 @@ pub struct System {
     pub(crate) constraints: Vec<NamedConstraint>,
     pub(crate) row_names: Vec<String>,
     pub(crate) row_scale: Vec<f64>,
+    pub(crate) softness: Vec<Softness>,
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
     pub(crate) forces: Vec<Force>,
@@ -265,6 +266,14 @@ impl System {
     }
 
     /// Q = Σ of every force.
+    pub(crate) fn add_applied_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
+        Q.fill(0.0);
+        for force in &self.forces {
+            force.add(motion, &self.mass, Q);
+        }
+    }
+
+    /// Q = Σ of every force.
     pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
         Q.fill(0.0);
         for force in &self.forces {
@@ -278,6 +287,7 @@ impl System {
         self.constraints.clear();
         self.row_names.clear();
         self.row_scale.clear();
+        self.softness.clear();
         for (name, constraint) in constraints {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
@@ -288,6 +298,7 @@ impl System {
                 rows => self.row_names.extend((0..rows).map(|k| format!("{name}[{k}]"))),
             }
             self.row_scale.resize(self.row_names.len(), constraint.scale(self.extent));
+            self.softness.resize(self.row_names.len(), constraint.softness());
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
@@ -348,6 +359,7 @@ impl SystemBuilder {
             constraints: Vec::new(),
             row_names: Vec::new(),
             row_scale: Vec::new(),
+            softness: Vec::new(),
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
             forces: self.forces,

@@ -138,7 +138,10 @@ fn redundant_rows_share_the_load() {
         }
         let (a, b) = (simulation.state().positions()[2], reference.state().positions()[2]);
         assert_close(&format!("x under {integrator}"), a, b, 1e-9); // roundoff of a second's motion
-        assert!(simulation.step().unwrap().warnings.contains(&Warning::Singular));
+        // A method that solves at the end of the step forms no A; whoever asks for the terms is told.
+        let report = simulation.step().unwrap();
+        let warnings = if integrator.is_implicit() { simulation.terms().warnings } else { report.warnings };
+        assert!(warnings.contains(&Warning::Singular), "{integrator}");
     }
 }
 

@@ -11,7 +11,7 @@
 //! Ċ  = n·u
 //! J  = nᵀ on a, −nᵀ on b
 //! γ  = (u·u − (n·u)²)/|d|        since C̈ = n·u̇ + ṅ·u and ṅ = (u − n (n·u))/|d|
-//! |∂²C/∂x²| = |I − nnᵀ|/|d| = 1/|d|
+//! ∂²C/∂x² = (I − nnᵀ)/|d| on aa and bb, its negative on ab;  its norm is 1/|d|
 //! ```
 //!
 //! squared form (the source's, with the −r² it forgot), [C] = m², λ in N/m, tension = −2|d|λ:
@@ -21,7 +21,7 @@
 //! Ċ  = 2 d·u
 //! J  = 2dᵀ on a, −2dᵀ on b
 //! γ  = 2 u·u
-//! |∂²C/∂x²| = 2
+//! ∂²C/∂x² = 2 I on aa and bb, −2 I on ab
 //! ```
 //!
 //! Fails at |d| = 0: the length form has no direction there and takes the first axis with γ = 0 (any unit vector is
@@ -29,6 +29,7 @@
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
 use super::{Formulation, Holds, RowWriter};
+use crate::linalg::block::{Block, diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, minus, norm, scaled};
 use crate::system::ParticleId;
 
@@ -116,6 +117,19 @@ impl Holds for Distance {
                 if length > 0.0 { 1.0 / length } else { 0.0 }
             }
             DistanceForm::Squared => 2.0,
+        }
+    }
+
+    fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+        match self.form {
+            DistanceForm::Length => {
+                let d = minus(motion.x(self.a), motion.x(self.b));
+                let length = norm(d);
+                let n = scaled(1.0 / length, d);
+                let stiffness = -lambda[0] / length;
+                (length > 0.0).then(|| plus(diagonal(stiffness), -stiffness, outer(1.0, n, n)))
+            }
+            DistanceForm::Squared => Some(diagonal(-2.0 * lambda[0])),
         }
     }
 

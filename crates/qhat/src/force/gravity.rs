@@ -5,7 +5,7 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, finite};
+use super::{Acts, Tangent, finite};
 use crate::point::{Motion, add, dot, first, scaled};
 use crate::system::ParticleId;
 
@@ -34,6 +34,8 @@ impl Acts for Gravity {
     }
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
+
+    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
 
     fn particles(&self) -> Vec<ParticleId> {
         Vec::new()

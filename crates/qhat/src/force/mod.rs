@@ -14,6 +14,7 @@ pub use mouse::MouseSpring;
 pub use point_force::PointForce;
 pub use spring::Spring;
 
+use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::system::ParticleId;
 
@@ -32,11 +33,28 @@ pub(crate) trait Acts {
     /// what limits the step of an explicit method.
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
 
+    /// Calls `visit` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step, where q̇ follows q at
+    /// `rate` [1/s]: for one particle its block, for two the block of each and, with the sign turned, of the pair.
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+    );
+
     /// The particles this force names; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
+}
+
+/// The stiffness of one force, in two parts, so that a method may leave out what is negative.
+pub(crate) struct Tangent<const D: usize> {
+    /// Positive semidefinite.
+    pub(crate) definite: Block<D>,
+    /// Semidefinite of either sign: geometric stiffness.
+    pub(crate) geometric: Block<D>,
 }
 
 macro_rules! forces {
@@ -61,6 +79,14 @@ macro_rules! forces {
             }
             fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
                 match self { $(Force::$kind(force) => force.stiffness(motion, bound),)* }
+            }
+            fn tangent<const D: usize>(
+                &self,
+                motion: Motion<'_, D>,
+                rate: f64,
+                visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+            ) {
+                match self { $(Force::$kind(force) => force.tangent(motion, rate, visit),)* }
             }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }

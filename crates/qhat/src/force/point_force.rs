@@ -5,7 +5,7 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, finite};
+use super::{Acts, Tangent, finite};
 use crate::point::{Motion, add, dot, first};
 use crate::system::ParticleId;
 
@@ -32,6 +32,8 @@ impl Acts for PointForce {
     }
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
+
+    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
 
     fn particles(&self) -> Vec<ParticleId> {
         vec![self.particle]

@@ -112,7 +112,7 @@ pub(super) fn frame<const D: usize>(
         report.warn(warning);
     }
     let deficient = workspace.equation.solver.deficient;
-    state.carry = Some(Carry { lambda, substep: proposed, deficient });
+    state.carry = Some(Carry { lambda, substep: proposed, deficient, previous: None });
     workspace.factored_at.clone_from(&state.q);
     report.factorizations = workspace.equation.solver.factorizations - factorizations;
     report.energy = measure::energy(system, state);
@@ -141,7 +141,12 @@ fn begin<const D: usize>(system: &System, state: &mut State, frame: f64, workspa
         }
         None => {
             let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
-            Carry { lambda: equation.lambda.clone(), substep: frame, deficient: equation.solver.deficient }
+            Carry {
+                lambda: equation.lambda.clone(),
+                substep: frame,
+                deficient: equation.solver.deficient,
+                previous: None,
+            }
         }
     }
 }

@@ -3,10 +3,13 @@
 //! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
 
 mod adaptive;
+mod bdf2;
 mod control;
 mod dop853;
 mod dopri5;
+mod end_of_step;
 mod euler;
+mod implicit;
 mod projection;
 mod rattle;
 mod rk4;
@@ -36,6 +39,7 @@ pub struct Workspace {
     factored_at: Vec<f64>,
     stages: runge_kutta::Stages,
     rattle: rattle::Scratch,
+    end_of_step: Option<Box<end_of_step::Scratch>>,
 }
 
 impl Workspace {
@@ -49,6 +53,7 @@ impl Workspace {
             factored_at: Vec::new(),
             stages: runge_kutta::Stages::new(coordinates, system.row_count()),
             rattle: rattle::Scratch::new(system),
+            end_of_step: None,
         }
     }
 
@@ -99,6 +104,10 @@ pub(crate) fn step_for(
         Integrator::Rattle => adaptive::frame::<D>(&rattle::Rattle, system, state, settings, frame, workspace),
         Integrator::Dopri5 => adaptive::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
         Integrator::Dop853 => adaptive::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
+        Integrator::Implicit => end_of_step::frame::<D>(implicit::base, None, system, state, settings, frame, workspace),
+        Integrator::Bdf2 => {
+            end_of_step::frame::<D>(implicit::base, Some(bdf2::base), system, state, settings, frame, workspace)
+        }
     })
 }
 

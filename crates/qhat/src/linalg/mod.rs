@@ -2,7 +2,10 @@
 //!
 //! Every operation is a plain f64 operation in a fixed order, so native and wasm results agree bit for bit.
 
+pub(crate) mod block;
+mod block_ldl;
 mod dense;
+mod leaf_to_root;
 mod ordering;
 mod rank;
 mod sparse;
@@ -10,6 +13,8 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use block_ldl::BlockLdl;
+pub(crate) use leaf_to_root::{LeafToRoot, Link, NONE, Saddle};
 pub(crate) use rank::rank;
 pub(crate) use symmetric::Pattern;
 pub use symmetric::SymmetricMatrix;

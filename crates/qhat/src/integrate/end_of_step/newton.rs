@@ -1,0 +1,261 @@
+//! One step, solved at its end by Newton's method.
+//!
+//! ```text
+//! q̇ = (q − q*)/h_e                                        q*, q̇* and h_e say which method it is
+//! M (q − q* − h_e q̇*) − h_e² Q(q, q̇) − Jᵀ μ = 0           μ = h_e² λ
+//! C + α λ + α c Ċ = 0                                      α = 0 for a rigid row
+//! ```
+//!
+//! The factor of an iteration is kept for the next where the speed at which the residual fell says that it will do: the last
+//! iteration of most steps then costs a solve and no factorization.
+//!
+//! Arrived where each row is within half the tolerance of its scale and each particle's force within the same part of what
+//! would move it by the system's extent in a step, or within what rounding leaves: ε |λ| |g| (1 + |g| |q|/scale), since the
+//! direction of a rod is rounded by ε |q|/r. Without that a load of 1e7 beads never stops.
+
+use super::matrix::{Matrix, Stiffness};
+use crate::integrate::projection::attainable;
+use crate::linalg::NONE;
+use crate::multiplier::Equation;
+use crate::point::{Motion, dot, norm};
+use crate::settings::Settings;
+use crate::system::System;
+
+/// Rounding errors of a force add up over its terms; this many covers what chains under loads of 1e9 beads showed.
+const ROUNDOFF: f64 = 16.0 * f64::EPSILON;
+
+/// Which method: where q would be and how fast it would move without forces.
+#[derive(Clone, Debug)]
+pub(in crate::integrate) struct Base {
+    /// q* [m].
+    pub(in crate::integrate) q: Vec<f64>,
+    /// q̇* [m/s].
+    pub(in crate::integrate) qd: Vec<f64>,
+    /// h_e [s].
+    pub(in crate::integrate) h_e: f64,
+}
+
+/// Arrays of the iteration.
+#[derive(Clone, Debug)]
+pub(super) struct Newton {
+    pub(super) matrix: Matrix,
+    /// μ = h_e² λ.
+    pub(super) mu: Vec<f64>,
+    /// Right sides, then Δq (by nodes) and −Δμ.
+    r: Vec<f64>,
+    s: Vec<f64>,
+    /// Σ |μ| |g| (1 + |g| |q|/scale) of each node.
+    load: Vec<f64>,
+    /// The nearest iterate so far.
+    best_q: Vec<f64>,
+    best_mu: Vec<f64>,
+}
+
+/// How far an iterate is from the solution, relative to what is asked for: 1 is just enough.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Miss {
+    pub(super) worst: f64,
+    /// The worst row with its |C + α λ + α c Ċ| over its scale.
+    pub(super) row: usize,
+    pub(super) relative: f64,
+}
+
+/// How an iteration ended; q and μ are the nearest iterate.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ending {
+    pub(super) has_arrived: bool,
+    pub(super) iterations: usize,
+    pub(super) miss: Miss,
+}
+
+impl Newton {
+    pub(super) fn new(system: &System) -> Self {
+        let (matrix, m) = (Matrix::new(system), system.row_count());
+        let nodes = matrix.graph.particle.len();
+        let coordinates = system.coordinate_count();
+        Newton {
+            mu: vec![0.0; m],
+            r: vec![0.0; nodes * system.dimension()],
+            s: vec![0.0; m],
+            load: vec![0.0; nodes],
+            best_q: vec![0.0; coordinates],
+            best_mu: vec![0.0; m],
+            matrix,
+        }
+    }
+
+    /// Solves for q (a guess on entry) and q̇ = (q − q*)/h_e. Leaves rows and forces at them.
+    pub(super) fn solve<const D: usize>(
+        &mut self,
+        system: &System,
+        settings: &Settings,
+        base: &Base,
+        limit: usize,
+        equation: &mut Equation,
+        q: &mut [f64],
+        qd: &mut [f64],
+    ) -> Ending {
+        let within = attainable(system, settings, q);
+        let farthest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let mut miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
+        let mut best = f64::INFINITY;
+        let (mut last, mut is_factored) = (f64::INFINITY, false);
+        for iterations in 0..=limit {
+            if miss.worst < best {
+                best = miss.worst;
+                self.best_q.copy_from_slice(q);
+                self.best_mu.copy_from_slice(&self.mu);
+            }
+            if miss.worst <= 1.0 {
+                return Ending { has_arrived: true, iterations, miss };
+            }
+            if iterations == limit || !miss.worst.is_finite() {
+                return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
+            }
+            // With the same factor the residual falls again as it just fell; with a new one faster.
+            let will_do = is_factored && miss.worst * (miss.worst / last) <= 1.0;
+            if !will_do {
+                let motion = Motion::<D> { q, qd };
+                let stiffness = Stiffness::Full { mu: &self.mu, h_e: base.h_e, signed: true };
+                if !self.matrix.factor(system, &equation.rows, motion, stiffness) {
+                    return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
+                }
+                is_factored = true;
+            }
+            last = miss.worst;
+            self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
+            for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
+                for (x, change) in q[id.0 * D..][..D].iter_mut().zip(change) {
+                    *x += change;
+                }
+            }
+            for (mu, change) in self.mu.iter_mut().zip(&self.s) {
+                *mu -= change;
+            }
+            miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
+        }
+        unreachable!("the loop returns at its limit")
+    }
+
+    /// Back to the nearest iterate.
+    #[expect(clippy::too_many_arguments, reason = "the same as solve's, handed on")]
+    fn give_up<const D: usize>(
+        &mut self,
+        system: &System,
+        base: &Base,
+        within: f64,
+        farthest: f64,
+        iterations: usize,
+        equation: &mut Equation,
+        q: &mut [f64],
+        qd: &mut [f64],
+    ) -> Ending {
+        q.copy_from_slice(&self.best_q);
+        self.mu.copy_from_slice(&self.best_mu);
+        let miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
+        Ending { has_arrived: false, iterations, miss }
+    }
+
+    /// Rows and forces at q, the right sides of the next iteration, and how far they are from zero.
+    fn evaluate<const D: usize>(
+        &mut self,
+        system: &System,
+        base: &Base,
+        within: f64,
+        farthest: f64,
+        equation: &mut Equation,
+        q: &[f64],
+        qd: &mut [f64],
+    ) -> Miss {
+        let h_e = base.h_e;
+        for k in 0..q.len() {
+            qd[k] = (q[k] - base.q[k]) / h_e;
+        }
+        let motion = Motion::<D> { q, qd };
+        equation.constrain(system, motion);
+        system.add_applied_forces(motion, &mut equation.Q);
+        let Newton { matrix, mu, r, s, load, .. } = self;
+        for (node, id) in matrix.graph.particle.iter().enumerate() {
+            for k in 0..D {
+                let (i, m) = (id.0 * D + k, system.mass[id.0]);
+                r[node * D + k] = h_e * h_e * equation.Q[i] - m * (q[i] - base.q[i] - h_e * base.qd[i]);
+            }
+        }
+        load.fill(0.0);
+        let rows = &equation.rows;
+        let mut miss = Miss { worst: 0.0, row: 0, relative: 0.0 };
+        for row in 0..mu.len() {
+            if system.matrix.inert[row] {
+                s[row] = 0.0;
+                continue;
+            }
+            let soft = &system.softness[row];
+            let missing = rows.C[row] + soft.compliance * (soft.damping * rows.Cd[row] + mu[row] / (h_e * h_e));
+            s[row] = -missing / soft.lag(h_e);
+            let scale = system.row_scale[row];
+            for entry in system.layout.start[row]..system.layout.start[row + 1] {
+                let node = matrix.graph.entry_node[entry];
+                if node != NONE {
+                    let g = rows.J.entry::<D>(entry);
+                    for (target, g) in r[node * D..][..D].iter_mut().zip(g) {
+                        *target += mu[row] * g;
+                    }
+                    let size = norm(g);
+                    load[node] += (mu[row] * size).abs() * (1.0 + size * farthest / scale);
+                }
+            }
+            let relative = (s[row] / scale).abs();
+            // Written so that what is no number is the worst of all.
+            if !(relative <= miss.relative) {
+                miss = Miss { worst: relative / within, row, relative };
+            }
+        }
+        for (node, id) in matrix.graph.particle.iter().enumerate() {
+            let m = system.mass[id.0];
+            let rounding = ROUNDOFF * (load[node] + m * farthest);
+            let unbalanced = norm(std::array::from_fn::<f64, D, _>(|k| r[node * D + k]));
+            let worst = unbalanced / (m * system.extent * within + rounding);
+            if !(worst <= miss.worst) {
+                miss.worst = worst;
+            }
+        }
+        if miss.worst.is_nan() {
+            miss.worst = f64::INFINITY;
+        }
+        miss
+    }
+
+    /// q̇ ← q̇ − W Jᵀ ν with J q̇ = 0, by the same elimination with K = 0.
+    pub(super) fn project_velocities<const D: usize>(
+        &mut self,
+        system: &System,
+        equation: &mut Equation,
+        q: &[f64],
+        qd: &mut [f64],
+    ) {
+        /// A penalty leaves about a hundred-millionth; a second pass leaves roundoff.
+        const PASSES: usize = 2;
+        if !self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd }, Stiffness::None) {
+            return;
+        }
+        let passes = if self.matrix.graph.penalties.is_empty() { 1 } else { PASSES };
+        for _ in 0..passes {
+            self.r.fill(0.0);
+            for row in 0..self.s.len() {
+                let takes_part = !system.matrix.inert[row] && system.softness[row].is_rigid();
+                let entries = system.layout.start[row]..system.layout.start[row + 1];
+                let rate: f64 = entries
+                    .map(|e| dot(equation.rows.J.entry::<D>(e), crate::point::block(qd, system.layout.particle[e])))
+                    .sum();
+                self.s[row] = if takes_part { -rate } else { 0.0 };
+            }
+            self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
+            for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
+                for (v, change) in qd[id.0 * D..][..D].iter_mut().zip(change) {
+                    *v += change;
+                }
+            }
+        }
+        equation.constrain(system, Motion::<D> { q, qd });
+    }
+}
