@@ -137,7 +137,10 @@ fn redundant_rows_share_the_load() {
             reference.step().unwrap();
         }
         let (a, b) = (simulation.state().positions()[2], reference.state().positions()[2]);
-        assert_close(&format!("x under {integrator}"), a, b, 1e-9); // roundoff of a second's motion
+        // Roundoff of a second's motion; an implicit step is solved to 1e-10 only, and what is missing is carried on as
+        // velocity.
+        let allowed = if integrator.is_implicit() { 1e-8 } else { 1e-9 };
+        assert_close(&format!("x under {integrator}"), a, b, allowed);
         // A method that solves at the end of the step forms no A; whoever asks for the terms is told.
         let report = simulation.step().unwrap();
         let warnings = if integrator.is_implicit() { simulation.terms().warnings } else { report.warnings };

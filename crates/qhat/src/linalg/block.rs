@@ -89,39 +89,66 @@ pub(crate) fn vector<const D: usize>(flat: &[f64], i: usize) -> [f64; D] {
     std::array::from_fn(|k| numbers[k])
 }
 
-/// A⁻¹ of a symmetric positive definite block by LDLᵀ; `None` where a pivot does not exceed `least`.
+/// A = L D Lᵀ of a symmetric positive definite block: L (unit lower) below the diagonal and 1/D on it; what is above means
+/// nothing. `None` where a pivot does not exceed `least`.
 #[inline(always)]
-pub(crate) fn inverse<const D: usize>(A: &Block<D>, least: f64) -> Option<Block<D>> {
-    // A = L D Lᵀ, then L⁻¹ by forward substitution, then A⁻¹ = L⁻ᵀ D⁻¹ L⁻¹.
-    let mut L = *A;
-    let (mut pivots, mut inverse_pivot) = ([0.0; D], [0.0; D]);
+pub(crate) fn ldl<const D: usize>(A: &Block<D>, least: f64) -> Option<Block<D>> {
+    let mut factor = *A;
+    let mut pivots = [0.0; D];
     for j in 0..D {
-        let mut pivot = L[j][j];
+        let mut pivot = factor[j][j];
         for k in 0..j {
-            pivot -= L[j][k] * L[j][k] * pivots[k];
+            pivot -= factor[j][k] * factor[j][k] * pivots[k];
         }
         if pivot.is_nan() || pivot <= least {
             return None;
         }
-        (pivots[j], inverse_pivot[j]) = (pivot, 1.0 / pivot);
+        (pivots[j], factor[j][j]) = (pivot, 1.0 / pivot);
         for i in j + 1..D {
-            let mut entry = L[i][j];
+            let mut entry = factor[i][j];
             for k in 0..j {
-                entry -= L[i][k] * L[j][k] * pivots[k];
+                entry -= factor[i][k] * factor[j][k] * pivots[k];
             }
-            L[i][j] = entry * inverse_pivot[j];
+            factor[i][j] = entry * factor[j][j];
         }
     }
-    let mut inverted = diagonal::<D>(1.0);
-    for i in 0..D {
-        for j in 0..i {
-            let entry = -(j..i).map(|k| L[i][k] * inverted[k][j]).sum::<f64>();
-            inverted[i][j] = entry;
+    Some(factor)
+}
+
+/// L⁻¹ x for the L of [`ldl`].
+#[inline(always)]
+pub(crate) fn forward<const D: usize>(factor: &Block<D>, mut x: [f64; D]) -> [f64; D] {
+    for i in 1..D {
+        for k in 0..i {
+            x[i] -= factor[i][k] * x[k];
         }
     }
-    Some(std::array::from_fn(|i| {
-        std::array::from_fn(|j| sum::<D>(|k| inverted[k][i] * inverse_pivot[k] * inverted[k][j]))
-    }))
+    x
+}
+
+/// L⁻ᵀ x for the L of [`ldl`].
+#[inline(always)]
+pub(crate) fn backward<const D: usize>(factor: &Block<D>, mut x: [f64; D]) -> [f64; D] {
+    for i in (0..D).rev() {
+        for k in i + 1..D {
+            x[i] -= factor[k][i] * x[k];
+        }
+    }
+    x
+}
+
+/// D⁻¹ x for the D of [`ldl`].
+#[inline(always)]
+pub(crate) fn divide<const D: usize>(factor: &Block<D>, x: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|i| factor[i][i] * x[i])
+}
+
+/// A⁻¹ of a symmetric positive definite block; `None` where a pivot does not exceed `least`.
+#[inline(always)]
+pub(crate) fn inverse<const D: usize>(A: &Block<D>, least: f64) -> Option<Block<D>> {
+    let factor = ldl(A, least)?;
+    let unit = diagonal::<D>(1.0);
+    Some(std::array::from_fn(|i| backward(&factor, divide(&factor, forward(&factor, unit[i])))))
 }
 
 /// Σ over k < D, from the first on.

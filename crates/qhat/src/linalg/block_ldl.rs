@@ -2,13 +2,15 @@
 //! a minimum degree order of the blocks.
 //!
 //! ```text
-//! L_ki D_i = A_ki − Σ_{j<i} L_kj D_j L_ijᵀ,   D_k = A_kk − Σ_{i<k} L_ki D_i L_kiᵀ
+//! Y_i = (A_ki − Σ_{j<i} Y_j L_ijᵀ) L_ii⁻ᵀ,   L_ki = Y_i D_i⁻¹,   L_kk D_k L_kkᵀ = A_kk − Σ_{i<k} L_ki Y_iᵀ
 //! ```
 //!
-//! D is block diagonal and kept inverted. Source: Davis, Algorithm 849, ACM TOMS 31 (2005), with blocks for numbers.
+//! D is diagonal and L_kk unit lower: number for number the factorization of the matrix without its blocks. An inverted block
+//! pivot would not do, a penalty of 1e8 beside 1 costs it all its digits. Source: Davis, Algorithm 849, ACM TOMS 31 (2005), with blocks for numbers.
 
 use super::block::{
-    Block, inverse, load, plus, product, product_transposed, store, times, transposed, transposed_times, vector, zero,
+    Block, backward, divide, forward, ldl, load, plus, product_transposed, store, times, transposed, transposed_times,
+    vector, zero,
 };
 use super::{Pattern, ordering};
 
@@ -34,7 +36,8 @@ pub(crate) struct BlockLdl {
     column_start: Vec<usize>,
     row_index: Vec<usize>,
     l: Vec<f64>,
-    inverse_pivot: Vec<f64>,
+    /// The factor of each block pivot.
+    pivot: Vec<f64>,
     /// One dense row of blocks; zero between uses.
     y: Vec<f64>,
     x: Vec<f64>,
@@ -116,7 +119,7 @@ impl BlockLdl {
         }
         let block = dimension * dimension;
         self.l = vec![0.0; columns.len() * block];
-        self.inverse_pivot = vec![0.0; n * block];
+        self.pivot = vec![0.0; n * block];
         self.y = vec![0.0; n * block];
         self.x = vec![0.0; n * dimension];
     }
@@ -133,17 +136,18 @@ impl BlockLdl {
             }
             let mut pivot = load::<D>(diagonal, self.order[k]);
             for &(i, place) in &self.row_entry[self.row_start[k]..self.row_start[k + 1]] {
-                let Y = load::<D>(&self.y, i);
+                let own = load::<D>(&self.pivot, i);
+                let Y = load::<D>(&self.y, i).map(|row| forward(&own, row));
                 store(&mut self.y, i, zero::<D>());
                 for p in self.column_start[i]..place {
                     subtract_product(&mut self.y, self.row_index[p], &Y, &self.l, p);
                 }
-                let L = product(&Y, &load(&self.inverse_pivot, i));
+                let L = Y.map(|row| divide(&own, row));
                 pivot = plus(pivot, -1.0, product_transposed(&L, &Y));
                 store(&mut self.l, place, L);
             }
-            match inverse(&pivot, LEAST * floor[self.order[k]]) {
-                Some(inverted) => store(&mut self.inverse_pivot, k, inverted),
+            match ldl(&pivot, LEAST * floor[self.order[k]]) {
+                Some(factor) => store(&mut self.pivot, k, factor),
                 None => return false,
             }
         }
@@ -156,7 +160,8 @@ impl BlockLdl {
             own.copy_from_slice(&r[node * D..][..D]);
         }
         for i in 0..self.order.len() {
-            let x = vector::<D>(&self.x, i);
+            let x = forward(&load::<D>(&self.pivot, i), vector(&self.x, i));
+            self.x[i * D..][..D].copy_from_slice(&x);
             for p in self.column_start[i]..self.column_start[i + 1] {
                 let change = times(&load::<D>(&self.l, p), x);
                 for (target, change) in self.x[self.row_index[p] * D..][..D].iter_mut().zip(change) {
@@ -165,12 +170,13 @@ impl BlockLdl {
             }
         }
         for i in (0..self.order.len()).rev() {
-            let mut x = times(&load::<D>(&self.inverse_pivot, i), vector(&self.x, i));
+            let own = load::<D>(&self.pivot, i);
+            let mut x = divide(&own, vector(&self.x, i));
             for p in self.column_start[i]..self.column_start[i + 1] {
                 let change = transposed_times(&load::<D>(&self.l, p), vector(&self.x, self.row_index[p]));
                 x = std::array::from_fn(|k| x[k] - change[k]);
             }
-            self.x[i * D..][..D].copy_from_slice(&x);
+            self.x[i * D..][..D].copy_from_slice(&backward(&own, x));
         }
         for (own, &node) in self.x.chunks_exact(D).zip(&self.order) {
             r[node * D..][..D].copy_from_slice(own);

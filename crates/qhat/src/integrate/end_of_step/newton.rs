@@ -112,8 +112,9 @@ impl Newton {
             if iterations == limit || !miss.worst.is_finite() {
                 return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
             }
-            // With the same factor the residual falls again as it just fell; with a new one faster.
-            let will_do = is_factored && miss.worst * (miss.worst / last) <= 1.0;
+            // With the same factor the residual falls again as it just fell; two solves cost less than a new one.
+            let falls = miss.worst / last;
+            let will_do = is_factored && miss.worst * falls * falls <= 1.0;
             if !will_do {
                 let motion = Motion::<D> { q, qd };
                 let stiffness = Stiffness::Full { mu: &self.mu, h_e: base.h_e, signed: true };
