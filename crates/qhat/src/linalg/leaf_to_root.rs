@@ -68,7 +68,7 @@ pub(crate) struct Saddle<'a> {
     pub(crate) floor: &'a [f64],
     /// G's blocks of D numbers.
     pub(crate) rows: &'a [f64],
-    /// E, one number a row; infinite where a row takes no part.
+    /// E, one number a row.
     pub(crate) softness: &'a [f64],
 }
 
@@ -110,8 +110,7 @@ impl LeafToRoot {
             let hangs = link.parent != NONE;
             let mut H = load::<D>(saddle.diagonal, link.node);
             let mut O = if hangs { load::<D>(saddle.coupling, link.edge) } else { [[0.0; D]; D] };
-            let takes_part = link.row != NONE && saddle.softness[link.row] < f64::INFINITY;
-            let g = if takes_part { vector::<D>(saddle.rows, link.own) } else { [0.0; D] };
+            let g = if link.row != NONE { vector::<D>(saddle.rows, link.own) } else { [0.0; D] };
             let length = norm(g);
             let n = g.map(|component| component / length);
             let least = LEAST_PIVOT * saddle.floor[link.node];
@@ -153,7 +152,7 @@ impl LeafToRoot {
             put(&mut self.along, k, v);
             self.pivot[k] = pivot;
             if hangs {
-                let w = if takes_part { vector::<D>(saddle.rows, link.above) } else { [0.0; D] };
+                let w = if link.row != NONE { vector::<D>(saddle.rows, link.above) } else { [0.0; D] };
                 let u = transposed_times(&O, v);
                 let lifted = product(&transposed(&O), &product(&T, &O));
                 let [p, q, r] = pivot;

@@ -28,15 +28,6 @@ const PASSES: usize = 6;
 /// Where passes have done enough for an iteration of Newton's method.
 const SOLVED: f64 = 1e-6;
 
-/// What goes into the matrix besides the rows.
-#[derive(Clone, Copy)]
-pub(super) enum Stiffness<'a> {
-    /// K = 0, soft rows left out: the projection of velocities.
-    None,
-    /// K for μ = h_e² λ, with its sign or without what is negative.
-    Full { mu: &'a [f64], h_e: f64, signed: bool },
-}
-
 /// Blocks and factors.
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
@@ -79,24 +70,20 @@ impl Matrix {
         }
     }
 
-    /// Assembles and factors. Where a component with cycles is not positive definite, it is done again without what is
-    /// negative in K; false where that does not help either.
+    /// Assembles and factors, for μ = h_e² λ. Where a component with cycles is not positive definite, it is done again without
+    /// what is negative in K; false where that does not help either.
     pub(super) fn factor<const D: usize>(
         &mut self,
         system: &System,
         rows: &Rows,
         motion: Motion<'_, D>,
-        stiffness: Stiffness<'_>,
+        mu: &[f64],
+        h_e: f64,
     ) -> bool {
-        self.assemble(system, rows, motion, stiffness);
-        let is_definite = self.eliminate::<D>(rows);
-        match stiffness {
-            Stiffness::Full { mu, h_e, signed: true } if !is_definite => {
-                self.assemble(system, rows, motion, Stiffness::Full { mu, h_e, signed: false });
-                self.eliminate::<D>(rows)
-            }
-            _ => is_definite,
-        }
+        [true, false].into_iter().any(|signed| {
+            self.assemble(system, rows, motion, mu, h_e, signed);
+            self.eliminate::<D>(rows)
+        })
     }
 
     fn eliminate<const D: usize>(&mut self, rows: &Rows) -> bool {
@@ -115,7 +102,9 @@ impl Matrix {
         system: &System,
         rows: &Rows,
         motion: Motion<'_, D>,
-        stiffness: Stiffness<'_>,
+        mu: &[f64],
+        h_e: f64,
+        signed: bool,
     ) {
         for (node, &mass) in self.mass.iter().enumerate() {
             store(&mut self.diagonal, node, diagonal::<D>(mass));
@@ -123,20 +112,11 @@ impl Matrix {
         self.size.copy_from_slice(&self.mass);
         self.coupling.fill(0.0);
         self.retreat.fill(0.0);
-        match stiffness {
-            Stiffness::None => {
-                for (softness, row) in self.softness.iter_mut().zip(&system.softness) {
-                    *softness = if row.is_rigid() { 0.0 } else { f64::INFINITY };
-                }
-            }
-            Stiffness::Full { mu, h_e, signed } => {
-                for (softness, row) in self.softness.iter_mut().zip(&system.softness) {
-                    *softness = row.compliance / (h_e * h_e * row.lag(h_e));
-                }
-                self.add_geometric_stiffness(system, motion, mu, signed);
-                self.add_tangents(system, motion, h_e, signed);
-            }
+        for (softness, row) in self.softness.iter_mut().zip(&system.softness) {
+            *softness = row.compliance / (h_e * h_e * row.lag(h_e));
         }
+        self.add_geometric_stiffness(system, motion, mu, signed);
+        self.add_tangents(system, motion, h_e, signed);
         self.add_penalties::<D>(system, rows);
     }
 

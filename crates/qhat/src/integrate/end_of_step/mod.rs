@@ -130,7 +130,8 @@ fn substeps<const D: usize>(
                 time: state.t + h,
             });
         }
-        scratch.newton.project_velocities::<D>(system, &mut workspace.equation, &workspace.q, &mut workspace.qd);
+        let Workspace { equation, q, qd, .. } = &mut *workspace;
+        scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, equation, q, qd);
         check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
         keep::<D>(system, state, h, workspace, scratch);
         report.substeps += 1;

@@ -13,11 +13,11 @@
 //! would move it by the system's extent in a step, or within what rounding leaves: ε |λ| |g| (1 + |g| |q|/scale), since the
 //! direction of a rod is rounded by ε |q|/r. Without that a load of 1e7 beads never stops.
 
-use super::matrix::{Matrix, Stiffness};
+use super::matrix::Matrix;
 use crate::integrate::projection::attainable;
 use crate::linalg::NONE;
 use crate::multiplier::Equation;
-use crate::point::{Motion, dot, norm};
+use crate::point::{Motion, block, dot, norm};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -65,6 +65,8 @@ pub(super) struct Miss {
 pub(super) struct Ending {
     pub(super) has_arrived: bool,
     pub(super) iterations: usize,
+    /// Whether the matrix is factored, at the last iterate or one near by.
+    pub(super) is_factored: bool,
     pub(super) miss: Miss,
 }
 
@@ -107,7 +109,7 @@ impl Newton {
                 self.best_mu.copy_from_slice(&self.mu);
             }
             if miss.worst <= 1.0 {
-                return Ending { has_arrived: true, iterations, miss };
+                return Ending { has_arrived: true, iterations, is_factored, miss };
             }
             if iterations == limit || !miss.worst.is_finite() {
                 return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
@@ -117,8 +119,7 @@ impl Newton {
             let will_do = is_factored && miss.worst * falls * falls <= 1.0;
             if !will_do {
                 let motion = Motion::<D> { q, qd };
-                let stiffness = Stiffness::Full { mu: &self.mu, h_e: base.h_e, signed: true };
-                if !self.matrix.factor(system, &equation.rows, motion, stiffness) {
+                if !self.matrix.factor(system, &equation.rows, motion, &self.mu, base.h_e) {
                     return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
                 }
                 is_factored = true;
@@ -154,7 +155,8 @@ impl Newton {
         q.copy_from_slice(&self.best_q);
         self.mu.copy_from_slice(&self.best_mu);
         let miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
-        Ending { has_arrived: false, iterations, miss }
+        // The factor belongs to wherever the iteration went; a new one is made here if it is needed.
+        Ending { has_arrived: false, iterations, is_factored: false, miss }
     }
 
     /// Rows and forces at q, the right sides of the next iteration, and how far they are from zero.
@@ -226,29 +228,42 @@ impl Newton {
         miss
     }
 
-    /// q̇ ← q̇ − W Jᵀ ν with J q̇ = 0, by the same elimination with K = 0.
+    /// Takes out of q̇ what violates Ċ = 0, in the metric of the step's own matrix M + h_e² K: its factor is at hand, and what
+    /// hangs on a tight rod is not kicked sideways as it would be in the metric of M. `is_factored` says whether this step made
+    /// one.
     pub(super) fn project_velocities<const D: usize>(
         &mut self,
         system: &System,
+        base: &Base,
+        mut is_factored: bool,
         equation: &mut Equation,
         q: &[f64],
         qd: &mut [f64],
     ) {
-        /// A penalty leaves about a hundred-millionth; a second pass leaves roundoff.
-        const PASSES: usize = 2;
-        if !self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd }, Stiffness::None) {
-            return;
-        }
-        let passes = if self.matrix.graph.penalties.is_empty() { 1 } else { PASSES };
-        for _ in 0..passes {
+        /// The factor belongs to a q next door: each pass gains as many digits as J has in common there, four or more.
+        const PASSES: usize = 4;
+        /// A rate below this part of the fastest particle's speed over the extent is roundoff.
+        const CONSISTENT: f64 = 1e-14;
+        let fastest = qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        for _ in 0..PASSES {
             self.r.fill(0.0);
+            let mut worst = 0.0_f64;
             for row in 0..self.s.len() {
                 let takes_part = !system.matrix.inert[row] && system.softness[row].is_rigid();
                 let entries = system.layout.start[row]..system.layout.start[row + 1];
-                let rate: f64 = entries
-                    .map(|e| dot(equation.rows.J.entry::<D>(e), crate::point::block(qd, system.layout.particle[e])))
-                    .sum();
+                let terms = entries.map(|e| dot(equation.rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
+                let rate: f64 = terms.sum();
                 self.s[row] = if takes_part { -rate } else { 0.0 };
+                worst = worst.max(self.s[row].abs() / system.row_scale[row]);
+            }
+            if worst * system.extent <= CONSISTENT * fastest {
+                break;
+            }
+            if !is_factored {
+                is_factored = self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd }, &self.mu, base.h_e);
+            }
+            if !is_factored {
+                break;
             }
             self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
             for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
