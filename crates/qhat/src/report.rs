@@ -16,11 +16,11 @@ pub struct StepReport {
     pub iterations: usize,
     /// The smallest substep [s].
     pub smallest_substep: f64,
-    /// max |C| over the rows [C].
+    /// max |C| over the rigid rows [C].
     pub max_residual: f64,
-    /// max |Ċ| over the rows [C/s].
+    /// max |Ċ| over the rigid rows [C/s].
     pub max_residual_rate: f64,
-    /// max ||d| − r|/r over the rods.
+    /// max ||d| − r|/r over the rigid rods.
     pub max_relative_length_error: f64,
     /// Energies at the end.
     pub energy: Energy,

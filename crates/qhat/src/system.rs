@@ -128,6 +128,8 @@ pub struct System {
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
     pub(crate) forces: Vec<Force>,
+    /// Constraints that give way, as forces.
+    pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
 }
@@ -265,7 +267,7 @@ impl System {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
     }
 
-    /// Q = Σ of every force.
+    /// Q without the constraints that give way, for methods that solve their rows.
     pub(crate) fn add_applied_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
         Q.fill(0.0);
         for force in &self.forces {
@@ -273,12 +275,17 @@ impl System {
         }
     }
 
-    /// Q = Σ of every force.
+    /// Q = Σ of every force, those of constraints that give way among them.
     pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
-        Q.fill(0.0);
-        for force in &self.forces {
+        self.add_applied_forces(motion, Q);
+        for force in &self.compliant {
             force.add(motion, &self.mass, Q);
         }
+    }
+
+    /// Every force, those of constraints that give way among them.
+    pub(crate) fn all_forces(&self) -> impl Iterator<Item = &Force> {
+        self.forces.iter().chain(&self.compliant)
     }
 
     /// Writes the constraints and all that follows from what they connect.
@@ -288,6 +295,7 @@ impl System {
         self.row_names.clear();
         self.row_scale.clear();
         self.softness.clear();
+        self.compliant.clear();
         for (name, constraint) in constraints {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
@@ -299,10 +307,11 @@ impl System {
             }
             self.row_scale.resize(self.row_names.len(), constraint.scale(self.extent));
             self.softness.resize(self.row_names.len(), constraint.softness());
+            self.compliant.extend(constraint.as_force());
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
-        self.matrix = MatrixStructure::new(&self.layout, &self.inverse_mass);
+        self.matrix = MatrixStructure::new(&self.layout, &self.inverse_mass, &self.softness);
     }
 }
 
@@ -363,6 +372,7 @@ impl SystemBuilder {
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
             forces: self.forces,
+            compliant: Vec::new(),
             feedback: self.feedback,
             extent,
         };

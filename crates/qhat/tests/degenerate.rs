@@ -154,7 +154,7 @@ fn coincident_particles() {
         let mut builder = plane();
         let a = builder.particle(Particle::at("a", [0.3, 0.4]));
         let b = builder.particle(Particle::at("b", [0.3, 0.4]));
-        builder.constraint("rod", Distance { a, b, length: 1.0, form }).force(systems::gravity());
+        builder.constraint("rod", Distance { form, ..Distance::new(a, b, 1.0) }).force(systems::gravity());
         builder.force(qhat::Spring { a, b, stiffness: 10.0, damping: 1.0, rest: 0.5 });
         let (system, state) = builder.build().unwrap();
         let terms = evaluate(&system, &state);

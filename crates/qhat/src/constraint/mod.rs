@@ -12,6 +12,7 @@ pub use nail::{Nail, NailForm};
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
 
+use crate::force::Force;
 use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::system::ParticleId;
@@ -33,6 +34,11 @@ pub(crate) trait Holds {
     /// How far its rows give way.
     fn softness(&self) -> Softness {
         Softness::default()
+    }
+
+    /// What rows that give way are to a method that does not solve at the end of the step.
+    fn as_force(&self) -> Option<Force> {
+        None
     }
 
     /// A bound on the norm of one block of ∂²C/∂q² [C/m²]: times |λ| it is geometric stiffness.
@@ -104,6 +110,9 @@ macro_rules! constraints {
             }
             fn softness(&self) -> Softness {
                 match self { $(Constraint::$kind(constraint) => constraint.softness(),)* }
+            }
+            fn as_force(&self) -> Option<Force> {
+                match self { $(Constraint::$kind(constraint) => constraint.as_force(),)* }
             }
             fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
                 match self { $(Constraint::$kind(constraint) => constraint.curvature(motion),)* }

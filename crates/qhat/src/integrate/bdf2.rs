@@ -9,10 +9,13 @@
 //! The first step, and one that Newton's method finds hard, is one of backward Euler.
 //! Source: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, III.5.
 
-use super::end_of_step::Base;
+use super::end_of_step::{Base, Formula};
+use super::implicit;
 use crate::state::{Previous, State};
 
-pub(super) fn base(state: &State, previous: &Previous, h: f64, base: &mut Base) {
+pub(super) const BDF2: Formula = Formula { first: implicit::base, second: Some(base) };
+
+fn base(state: &State, previous: &Previous, h: f64, base: &mut Base) {
     let ratio = h / previous.h;
     let divisor = 1.0 + 2.0 * ratio;
     let (now, then) = ((1.0 + ratio) * (1.0 + ratio) / divisor, ratio * ratio / divisor);

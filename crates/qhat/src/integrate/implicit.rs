@@ -8,8 +8,10 @@
 //! energy, the more the longer the step: at 1/60 s a whipping chain of 100 loses most of it in two seconds.
 //! Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.3; Tournier et al., Stable Constrained Dynamics (2015).
 
-use super::end_of_step::Base;
+use super::end_of_step::{Base, Formula};
 use crate::state::State;
+
+pub(super) const IMPLICIT: Formula = Formula { first: base, second: None };
 
 pub(super) fn base(state: &State, h: f64, base: &mut Base) {
     base.q.copy_from_slice(&state.q);

@@ -104,10 +104,10 @@ pub(crate) fn step_for(
         Integrator::Rattle => adaptive::frame::<D>(&rattle::Rattle, system, state, settings, frame, workspace),
         Integrator::Dopri5 => adaptive::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
         Integrator::Dop853 => adaptive::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
-        Integrator::Implicit => end_of_step::frame::<D>(implicit::base, None, system, state, settings, frame, workspace),
-        Integrator::Bdf2 => {
-            end_of_step::frame::<D>(implicit::base, Some(bdf2::base), system, state, settings, frame, workspace)
+        Integrator::Implicit => {
+            end_of_step::frame::<D>(&implicit::IMPLICIT, system, state, settings, frame, workspace)
         }
+        Integrator::Bdf2 => end_of_step::frame::<D>(&bdf2::BDF2, system, state, settings, frame, workspace),
     })
 }
 

@@ -7,7 +7,7 @@
 //! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which pairs of
 //! blocks meet in which entry is found once, when the System is built.
 
-use crate::constraint::{Jacobian, Layout};
+use crate::constraint::{Jacobian, Layout, Softness};
 use crate::linalg::Pattern;
 use crate::point::dot;
 use crate::system::ParticleId;
@@ -17,7 +17,7 @@ use crate::system::ParticleId;
 pub(crate) struct MatrixStructure {
     pub(crate) pattern: Pattern,
     products: Vec<Product>,
-    /// Rows all of whose particles are fixed: their row of A is zero for good, no λ can act through them.
+    /// Rows all of whose particles are fixed, and rows that give way and are forces here: their row of A is zero for good.
     pub(crate) inert: Vec<bool>,
 }
 
@@ -31,7 +31,7 @@ struct Product {
 }
 
 impl MatrixStructure {
-    pub(crate) fn new(layout: &Layout, W: &[f64]) -> Self {
+    pub(crate) fn new(layout: &Layout, W: &[f64], softness: &[Softness]) -> Self {
         let m = layout.row_count();
         // For every particle that can move: the rows that touch it, with the block of J.
         let mut touching = vec![Vec::new(); W.len()];
@@ -39,7 +39,7 @@ impl MatrixStructure {
         for row in 0..m {
             for e in layout.start[row]..layout.start[row + 1] {
                 let particle = layout.particle[e];
-                if W[particle.0] > 0.0 {
+                if W[particle.0] > 0.0 && softness[row].is_rigid() {
                     touching[particle.0].push((row, e));
                     inert[row] = false;
                 }

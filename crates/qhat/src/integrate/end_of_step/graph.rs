@@ -30,6 +30,8 @@ pub(super) struct Graph {
     sorted: Vec<(usize, usize)>,
     /// (first, second): the block of the edge is H_first,second.
     pub(super) edges: Vec<(usize, usize)>,
+    /// Rows that touch no node.
+    pub(super) idle: Vec<bool>,
     /// Rows that act through a penalty.
     pub(super) penalties: Vec<usize>,
     /// Where each constraint stands.
@@ -64,6 +66,7 @@ impl Graph {
             node,
             edges: sorted.clone(),
             sorted,
+            idle: Vec::new(),
             penalties: Vec::new(),
             constraints: Vec::new(),
             forest: LeafToRoot::default(),
@@ -95,6 +98,7 @@ impl Graph {
 
     fn order_elimination(&mut self, system: &System) {
         let count = self.particle.len();
+        self.idle = (0..system.row_count()).map(|row| self.touched(system, row).is_empty()).collect();
         let mut neighbours: Vec<Vec<(usize, usize)>> = vec![Vec::new(); count];
         for (edge, &(a, b)) in self.edges.iter().enumerate() {
             neighbours[a].push((b, edge));
@@ -148,9 +152,7 @@ impl Graph {
         }
         links.reverse();
         in_cycles.sort_unstable();
-        self.penalties = (0..system.row_count())
-            .filter(|&row| !eliminated_with[row] && !self.touched(system, row).is_empty())
-            .collect();
+        self.penalties = (0..system.row_count()).filter(|&row| !eliminated_with[row] && !self.idle[row]).collect();
         self.has_cycles = !in_cycles.is_empty();
         self.forest = LeafToRoot::new(links, system.dimension());
         self.cycles = BlockLdl::new(&in_cycles, &self.edges, system.dimension());

@@ -221,7 +221,7 @@ impl Matrix {
             self.pass::<D>(system, &mut dr, &mut ds);
             let size = self.largest(&ds);
             // In a null space of Jᵀ nothing gets smaller, and nothing that is added there moves anything.
-            if !(size < 0.5 * last) {
+            if size.is_nan() || size >= 0.5 * last {
                 break;
             }
             r.iter_mut().zip(&dr).for_each(|(sum, change)| *sum += change);

@@ -21,7 +21,7 @@ use crate::report::{StepReport, Warning};
 use crate::settings::{Feedback, Settings};
 use crate::state::{Carry, Previous, State};
 use crate::system::System;
-use newton::{Ending, Newton};
+use newton::{Ending, Newton, Tried};
 
 /// Newton's method from q + h q̇ takes three to five iterations, in the whip crack of a chain ten, on a hanging net
 /// forty-five; beyond this two halves of the step are cheaper.
@@ -31,11 +31,16 @@ const MOST_ITERATIONS: usize = 60;
 /// unfinished step of BDF2 goes on into the next two.
 const BEFORE_FALLBACK: usize = 10;
 
-/// Halvings of the frame before giving up.
-const MOST_HALVINGS: u32 = 12;
+/// A frame is cut into no more than this many steps, a power of two: where such a short one does not help, none will.
+const PARTS: u32 = 4096;
 
-/// A method of second order: writes q*, q̇* and h_e for a step of h, or says that it has no history to go by.
-pub(super) type SecondOrder = fn(&State, &Previous, f64, &mut Base);
+/// A method: how it writes q*, q̇* and h_e for a step of h.
+pub(super) struct Formula {
+    /// From the state alone: backward Euler.
+    pub(super) first: fn(&State, f64, &mut Base),
+    /// From the state and the one before, for a method of second order.
+    pub(super) second: Option<fn(&State, &Previous, f64, &mut Base)>,
+}
 
 /// Arrays of these methods, made when one of them first steps.
 #[derive(Clone, Debug)]
@@ -53,8 +58,7 @@ impl Scratch {
 
 /// Carries the state over one frame: one step, or halves of it where Newton's method does not arrive.
 pub(super) fn frame<const D: usize>(
-    first: fn(&State, f64, &mut Base),
-    second: Option<SecondOrder>,
+    formula: &Formula,
     system: &System,
     state: &mut State,
     settings: &Settings,
@@ -62,24 +66,22 @@ pub(super) fn frame<const D: usize>(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     let mut scratch = workspace.end_of_step.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
-    workspace.factored_at.clear();
     let before = workspace.equation.solver.factorizations;
     if state.carry.is_none() {
-        // λ of the equation is the best first guess; what is singular there is so only for an instant.
-        let lambda = workspace.solve::<D>(system, state, &Feedback::NONE).lambda.clone();
-        state.carry = Some(Carry { lambda, substep: frame, deficient: false, previous: None });
-        workspace.factored_at.clear();
+        // λ of the equation is the best first guess.
+        let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
+        let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
+        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None });
     }
+    workspace.factored_at.clear();
     scratch.newton.matrix.factorizations = workspace.equation.solver.factorizations - before;
-    let outcome = substeps::<D>(first, second, system, state, settings, frame, workspace, &mut scratch);
+    let outcome = substeps::<D>(formula, system, state, settings, frame, workspace, &mut scratch);
     workspace.end_of_step = Some(scratch);
     outcome
 }
 
-#[expect(clippy::too_many_arguments, reason = "frame's, handed on with the scratch taken out of the workspace")]
 fn substeps<const D: usize>(
-    first: fn(&State, f64, &mut Base),
-    second: Option<SecondOrder>,
+    formula: &Formula,
     system: &System,
     state: &mut State,
     settings: &Settings,
@@ -88,57 +90,40 @@ fn substeps<const D: usize>(
     scratch: &mut Scratch,
 ) -> Result<StepReport, StepError> {
     let mut report = StepReport { smallest_substep: frame, ..StepReport::default() };
-    let (start, mut done) = (state.t, 0.0);
-    let (mut h, mut halvings) = (frame, 0);
-    while done < frame {
-        let remaining = settings.frame_budget.saturating_sub(report.iterations);
-        let mut ending = None;
-        if let (Some(second), Some(previous)) = (second, history(state)) {
-            second(state, previous, h, &mut scratch.base);
-            let limit = BEFORE_FALLBACK.min(remaining / 2);
-            let tried = attempt::<D>(system, state, settings, h, limit, workspace, scratch);
-            report.iterations += tried.iterations;
-            ending = Some(tried).filter(|tried| tried.has_arrived);
+    let start = state.t;
+    // In parts of the frame, which add up without rounding.
+    let (mut done, mut parts) = (0, PARTS);
+    while done < PARTS {
+        let h = frame * (f64::from(parts) / f64::from(PARTS));
+        let left = settings.frame_budget - report.iterations.min(settings.frame_budget);
+        let ending = attempt::<D>(formula, system, state, settings, h, left, workspace, scratch);
+        report.iterations += ending.iterations;
+        if !ending.has_arrived && report.iterations < settings.frame_budget {
+            report.rejected += 1;
+            parts /= 2;
+            if parts == 0 {
+                state.carry = None;
+                return Err(failure(system, state, workspace, &ending));
+            }
+            continue;
         }
-        let ending = match ending {
-            Some(ending) => ending,
-            None => {
-                first(state, h, &mut scratch.base);
-                let limit = MOST_ITERATIONS.min(settings.frame_budget.saturating_sub(report.iterations)).max(1);
-                let tried = attempt::<D>(system, state, settings, h, limit, workspace, scratch);
-                report.iterations += tried.iterations;
-                tried
-            }
-        };
         if !ending.has_arrived {
-            if report.iterations < settings.frame_budget {
-                report.rejected += 1;
-                halvings += 1;
-                h *= 0.5;
-                if halvings > MOST_HALVINGS {
-                    state.carry = None;
-                    let residual = workspace.equation.rows.C.get(ending.miss.row).copied().unwrap_or(f64::NAN);
-                    let row = system.row_names.get(ending.miss.row).cloned().unwrap_or_default();
-                    return Err(StepError::NotSatisfied { time: state.t, row, residual });
-                }
-                continue;
-            }
             report.warn(Warning::BudgetSpent {
+                time: state.t + h,
                 iterations: report.iterations,
                 row: system.row_names.get(ending.miss.row).cloned().unwrap_or_default(),
                 relative: ending.miss.relative,
-                time: state.t + h,
             });
         }
         let Workspace { equation, q, qd, .. } = &mut *workspace;
-        scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, equation, q, qd);
+        let mut tried = Tried { equation, q, qd };
+        scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, &mut tried);
         check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
-        keep::<D>(system, state, h, workspace, scratch);
+        keep::<D>(formula, system, state, h, workspace, scratch);
         report.substeps += 1;
         report.smallest_substep = report.smallest_substep.min(h);
-        // Halves of halves of a frame add up to it without rounding.
-        done += h;
-        state.t = if done == frame { start + frame } else { start + done };
+        done += parts;
+        state.t = start + frame * (f64::from(done) / f64::from(PARTS));
         let motion = Motion::<D> { q: &state.q, qd: &state.qd };
         let drift = measure::drift(system, &workspace.equation.rows, motion);
         report.max_residual = report.max_residual.max(drift.residual);
@@ -150,12 +135,39 @@ fn substeps<const D: usize>(
     Ok(report)
 }
 
-fn history(state: &State) -> Option<&Previous> {
-    state.carry.as_ref().and_then(|carry| carry.previous.as_ref())
+/// One step of h into the workspace, with no more than `left` iterations: of second order where there is a history, else, or
+/// where that is hard, of backward Euler.
+#[expect(clippy::too_many_arguments, reason = "one step knows the whole of the frame")]
+fn attempt<const D: usize>(
+    formula: &Formula,
+    system: &System,
+    state: &State,
+    settings: &Settings,
+    h: f64,
+    left: usize,
+    workspace: &mut Workspace,
+    scratch: &mut Scratch,
+) -> Ending {
+    let previous = state.carry.as_ref().and_then(|carry| carry.previous.as_ref());
+    let mut spent = 0;
+    if let (Some(second), Some(previous)) = (formula.second, previous) {
+        second(state, previous, h, &mut scratch.base);
+        // Half of what is left, so that backward Euler still has its turn.
+        let ending = solve::<D>(system, state, settings, h, BEFORE_FALLBACK.min(left / 2), workspace, scratch);
+        if ending.has_arrived {
+            return ending;
+        }
+        spent = ending.iterations;
+    }
+    (formula.first)(state, h, &mut scratch.base);
+    // A step takes an iteration even where the budget has none left: without it the rods would not be held at all.
+    let limit = MOST_ITERATIONS.min(left.saturating_sub(spent)).max(1);
+    let ending = solve::<D>(system, state, settings, h, limit, workspace, scratch);
+    Ending { iterations: spent + ending.iterations, ..ending }
 }
 
-/// One step from the state with the base that was set, into the workspace.
-fn attempt<const D: usize>(
+/// Newton's method from q + h q̇ with the last λ.
+fn solve<const D: usize>(
     system: &System,
     state: &State,
     settings: &Settings,
@@ -174,13 +186,22 @@ fn attempt<const D: usize>(
     for (mu, multiplier) in newton.mu.iter_mut().zip(lambda) {
         *mu = scale * multiplier;
     }
-    newton.solve::<D>(system, settings, base, limit, equation, q, qd)
+    newton.solve::<D>(system, settings, base, limit, &mut Tried { equation, q, qd })
 }
 
 /// Makes the step in the workspace the state, and what a restart needs its carry.
-fn keep<const D: usize>(system: &System, state: &mut State, h: f64, workspace: &mut Workspace, scratch: &Scratch) {
-    let power = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-    state.work.dissipation += h * power;
+fn keep<const D: usize>(
+    formula: &Formula,
+    system: &System,
+    state: &mut State,
+    h: f64,
+    workspace: &mut Workspace,
+    scratch: &Scratch,
+) {
+    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
+    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
+    // The end point's rule is backward Euler's own; the trapezoidal rule is of second order.
+    state.work.dissipation += h * if formula.second.is_some() { 0.5 * (before + after) } else { after };
     std::mem::swap(&mut state.q, &mut workspace.q);
     std::mem::swap(&mut state.qd, &mut workspace.qd);
     if let Some(carry) = &mut state.carry {
@@ -193,5 +214,15 @@ fn keep<const D: usize>(system: &System, state: &mut State, h: f64, workspace: &
         previous.q.clone_from(&workspace.q);
         previous.qd.clone_from(&workspace.qd);
         previous.h = h;
+    }
+}
+
+fn failure(system: &System, state: &State, workspace: &Workspace, ending: &Ending) -> StepError {
+    let row = ending.miss.row;
+    match workspace.equation.rows.C.get(row) {
+        Some(&residual) => StepError::NotSatisfied { time: state.t, row: system.row_names[row].clone(), residual },
+        None => {
+            StepError::NotFinite { time: state.t, particle: system.particle_names.first().cloned().unwrap_or_default() }
+        }
     }
 }

@@ -10,10 +10,11 @@
 //! iteration of most steps then costs a solve and no factorization.
 //!
 //! Arrived where each row is within half the tolerance of its scale and each particle's force within the same part of what
-//! would move it by the system's extent in a step, or within what rounding leaves: ε |λ| |g| (1 + |g| |q|/scale), since the
-//! direction of a rod is rounded by ε |q|/r. Without that a load of 1e7 beads never stops.
+//! would move it by the system's extent in a step (and a hundred-millionth of what its rows carry), or within what rounding leaves: ε |λ| |g| (1 + |g| |q|/scale), since the
+//! direction of a rod is rounded by ε |q|/r; and ε h_e² k |q| for a spring of stiffness k. Without that a load of 1e7 beads never stops.
 
 use super::matrix::Matrix;
+use crate::force::Acts;
 use crate::integrate::projection::attainable;
 use crate::linalg::NONE;
 use crate::multiplier::Equation;
@@ -23,6 +24,10 @@ use crate::system::System;
 
 /// Rounding errors of a force add up over its terms; this many covers what chains under loads of 1e9 beads showed.
 const ROUNDOFF: f64 = 16.0 * f64::EPSILON;
+
+/// A short step hardly moves anything, whatever the forces; they must balance to this part of what the rows carry all the
+/// same, so that what rests, rests where it should.
+const BALANCED: f64 = 1e-8;
 
 /// Which method: where q would be and how fast it would move without forces.
 #[derive(Clone, Debug)]
@@ -44,11 +49,28 @@ pub(super) struct Newton {
     /// Right sides, then Δq (by nodes) and −Δμ.
     r: Vec<f64>,
     s: Vec<f64>,
-    /// Σ |μ| |g| (1 + |g| |q|/scale) of each node.
+    /// What each node carries, h_e² |Q| + Σ |μ| |g|, and what the rounding of q does to its forces, over ε.
     load: Vec<f64>,
+    rounding: Vec<f64>,
     /// The nearest iterate so far.
     best_q: Vec<f64>,
     best_mu: Vec<f64>,
+}
+
+/// The step being tried: q, q̇ and what is evaluated there.
+pub(super) struct Tried<'a> {
+    pub(super) equation: &'a mut Equation,
+    pub(super) q: &'a mut [f64],
+    pub(super) qd: &'a mut [f64],
+}
+
+/// What a step aims at.
+struct Aim<'a> {
+    base: &'a Base,
+    /// How much of its own scale a row may be off.
+    within: f64,
+    /// The largest coordinate [m], as what its rounding is measured by.
+    farthest: f64,
 }
 
 /// How far an iterate is from the solution, relative to what is asked for: 1 is just enough.
@@ -80,6 +102,7 @@ impl Newton {
             r: vec![0.0; nodes * system.dimension()],
             s: vec![0.0; m],
             load: vec![0.0; nodes],
+            rounding: vec![0.0; nodes],
             best_q: vec![0.0; coordinates],
             best_mu: vec![0.0; m],
             matrix,
@@ -93,102 +116,91 @@ impl Newton {
         settings: &Settings,
         base: &Base,
         limit: usize,
-        equation: &mut Equation,
-        q: &mut [f64],
-        qd: &mut [f64],
+        tried: &mut Tried<'_>,
     ) -> Ending {
-        let within = attainable(system, settings, q);
-        let farthest = q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let mut miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
-        let mut best = f64::INFINITY;
-        let (mut last, mut is_factored) = (f64::INFINITY, false);
-        for iterations in 0..=limit {
+        let farthest = tried.q.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let aim = Aim { base, within: attainable(system, settings, tried.q), farthest };
+        let mut miss = self.evaluate::<D>(system, &aim, tried);
+        let (mut best, mut last) = (f64::INFINITY, f64::INFINITY);
+        let (mut iterations, mut is_factored) = (0, false);
+        while exceeds(miss.worst, 1.0) {
             if miss.worst < best {
                 best = miss.worst;
-                self.best_q.copy_from_slice(q);
+                self.best_q.copy_from_slice(tried.q);
                 self.best_mu.copy_from_slice(&self.mu);
-            }
-            if miss.worst <= 1.0 {
-                return Ending { has_arrived: true, iterations, is_factored, miss };
-            }
-            if iterations == limit || !miss.worst.is_finite() {
-                return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
             }
             // With the same factor the residual falls again as it just fell; two solves cost less than a new one.
             let falls = miss.worst / last;
             let will_do = is_factored && miss.worst * falls * falls <= 1.0;
-            if !will_do {
-                let motion = Motion::<D> { q, qd };
-                if !self.matrix.factor(system, &equation.rows, motion, &self.mu, base.h_e) {
-                    return self.give_up::<D>(system, base, within, farthest, iterations, equation, q, qd);
-                }
-                is_factored = true;
+            let is_lost = iterations == limit || !miss.worst.is_finite();
+            if is_lost || !(will_do || self.factor::<D>(system, &aim, tried)) {
+                tried.q.copy_from_slice(&self.best_q);
+                self.mu.copy_from_slice(&self.best_mu);
+                miss = self.evaluate::<D>(system, &aim, tried);
+                // The factor belongs to wherever the iteration went.
+                return Ending { has_arrived: false, iterations, is_factored: false, miss };
             }
+            is_factored = true;
             last = miss.worst;
-            self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
-            for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
-                for (x, change) in q[id.0 * D..][..D].iter_mut().zip(change) {
-                    *x += change;
-                }
-            }
-            for (mu, change) in self.mu.iter_mut().zip(&self.s) {
-                *mu -= change;
-            }
-            miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
+            self.advance::<D>(system, tried.q);
+            iterations += 1;
+            miss = self.evaluate::<D>(system, &aim, tried);
         }
-        unreachable!("the loop returns at its limit")
+        Ending { has_arrived: true, iterations, is_factored, miss }
     }
 
-    /// Back to the nearest iterate.
-    #[expect(clippy::too_many_arguments, reason = "the same as solve's, handed on")]
-    fn give_up<const D: usize>(
-        &mut self,
-        system: &System,
-        base: &Base,
-        within: f64,
-        farthest: f64,
-        iterations: usize,
-        equation: &mut Equation,
-        q: &mut [f64],
-        qd: &mut [f64],
-    ) -> Ending {
-        q.copy_from_slice(&self.best_q);
-        self.mu.copy_from_slice(&self.best_mu);
-        let miss = self.evaluate::<D>(system, base, within, farthest, equation, q, qd);
-        // The factor belongs to wherever the iteration went; a new one is made here if it is needed.
-        Ending { has_arrived: false, iterations, is_factored: false, miss }
+    fn factor<const D: usize>(&mut self, system: &System, aim: &Aim<'_>, tried: &Tried<'_>) -> bool {
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        self.matrix.factor(system, &tried.equation.rows, motion, &self.mu, aim.base.h_e)
+    }
+
+    /// q ← q + Δq, μ ← μ + Δμ.
+    fn advance<const D: usize>(&mut self, system: &System, q: &mut [f64]) {
+        self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
+        for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
+            for (x, change) in q[id.0 * D..][..D].iter_mut().zip(change) {
+                *x += change;
+            }
+        }
+        for (mu, change) in self.mu.iter_mut().zip(&self.s) {
+            *mu -= change;
+        }
     }
 
     /// Rows and forces at q, the right sides of the next iteration, and how far they are from zero.
-    fn evaluate<const D: usize>(
-        &mut self,
-        system: &System,
-        base: &Base,
-        within: f64,
-        farthest: f64,
-        equation: &mut Equation,
-        q: &[f64],
-        qd: &mut [f64],
-    ) -> Miss {
+    fn evaluate<const D: usize>(&mut self, system: &System, aim: &Aim<'_>, tried: &mut Tried<'_>) -> Miss {
+        let Aim { base, within, farthest } = *aim;
         let h_e = base.h_e;
-        for k in 0..q.len() {
-            qd[k] = (q[k] - base.q[k]) / h_e;
+        for (v, (x, from)) in tried.qd.iter_mut().zip(tried.q.iter().zip(&base.q)) {
+            *v = (x - from) / h_e;
         }
-        let motion = Motion::<D> { q, qd };
-        equation.constrain(system, motion);
-        system.add_applied_forces(motion, &mut equation.Q);
-        let Newton { matrix, mu, r, s, load, .. } = self;
-        for (node, id) in matrix.graph.particle.iter().enumerate() {
-            for k in 0..D {
-                let (i, m) = (id.0 * D + k, system.mass[id.0]);
-                r[node * D + k] = h_e * h_e * equation.Q[i] - m * (q[i] - base.q[i] - h_e * base.qd[i]);
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        tried.equation.constrain(system, motion);
+        system.add_applied_forces(motion, &mut tried.equation.Q);
+        let (rows, Q) = (&tried.equation.rows, &tried.equation.Q);
+        let Newton { matrix, mu, r, s, load, rounding, .. } = self;
+        for (r, id) in r.chunks_exact_mut(D).zip(&matrix.graph.particle) {
+            let m = system.mass[id.0];
+            for (k, r) in r.iter_mut().enumerate() {
+                let i = id.0 * D + k;
+                *r = h_e * h_e * Q[i] - m * (motion.q[i] - base.q[i] - h_e * base.qd[i]);
             }
         }
-        load.fill(0.0);
-        let rows = &equation.rows;
+        for ((load, rounding), id) in load.iter_mut().zip(rounding.iter_mut()).zip(&matrix.graph.particle) {
+            *load = h_e * h_e * norm(block::<D>(Q, *id));
+            *rounding = system.mass[id.0] * farthest;
+        }
+        for force in &system.forces {
+            force.stiffness(motion, &mut |id, stiffness, damping| {
+                let place = matrix.graph.place(&[id]);
+                if place.a != NONE {
+                    rounding[place.a] += h_e * (h_e * stiffness + damping) * farthest;
+                }
+            });
+        }
         let mut miss = Miss { worst: 0.0, row: 0, relative: 0.0 };
         for row in 0..mu.len() {
-            if system.matrix.inert[row] {
+            if matrix.graph.idle[row] {
                 s[row] = 0.0;
                 continue;
             }
@@ -200,30 +212,27 @@ impl Newton {
                 let node = matrix.graph.entry_node[entry];
                 if node != NONE {
                     let g = rows.J.entry::<D>(entry);
-                    for (target, g) in r[node * D..][..D].iter_mut().zip(g) {
-                        *target += mu[row] * g;
+                    for (r, g) in r[node * D..][..D].iter_mut().zip(g) {
+                        *r += mu[row] * g;
                     }
                     let size = norm(g);
-                    load[node] += (mu[row] * size).abs() * (1.0 + size * farthest / scale);
+                    let pull = (mu[row] * size).abs();
+                    load[node] += pull;
+                    rounding[node] += pull * size * farthest / scale;
                 }
             }
             let relative = (s[row] / scale).abs();
-            // Written so that what is no number is the worst of all.
-            if !(relative <= miss.relative) {
+            if exceeds(relative, miss.relative) {
                 miss = Miss { worst: relative / within, row, relative };
             }
         }
-        for (node, id) in matrix.graph.particle.iter().enumerate() {
-            let m = system.mass[id.0];
-            let rounding = ROUNDOFF * (load[node] + m * farthest);
-            let unbalanced = norm(std::array::from_fn::<f64, D, _>(|k| r[node * D + k]));
-            let worst = unbalanced / (m * system.extent * within + rounding);
-            if !(worst <= miss.worst) {
+        for (node, (r, id)) in r.chunks_exact(D).zip(&matrix.graph.particle).enumerate() {
+            let allowed = (system.mass[id.0] * system.extent * within).min(BALANCED * load[node]);
+            let unbalanced = r.iter().map(|r| r * r).sum::<f64>().sqrt();
+            let worst = unbalanced / (allowed + ROUNDOFF * (load[node] + rounding[node]));
+            if exceeds(worst, miss.worst) {
                 miss.worst = worst;
             }
-        }
-        if miss.worst.is_nan() {
-            miss.worst = f64::INFINITY;
         }
         miss
     }
@@ -236,10 +245,9 @@ impl Newton {
         system: &System,
         base: &Base,
         mut is_factored: bool,
-        equation: &mut Equation,
-        q: &[f64],
-        qd: &mut [f64],
+        tried: &mut Tried<'_>,
     ) {
+        let Tried { equation, q, qd } = tried;
         /// The factor belongs to a q next door: each pass gains as many digits as J has in common there, four or more.
         const PASSES: usize = 4;
         /// A rate below this part of the fastest particle's speed over the extent is roundoff.
@@ -249,7 +257,7 @@ impl Newton {
             self.r.fill(0.0);
             let mut worst = 0.0_f64;
             for row in 0..self.s.len() {
-                let takes_part = !system.matrix.inert[row] && system.softness[row].is_rigid();
+                let takes_part = !self.matrix.graph.idle[row] && system.softness[row].is_rigid();
                 let entries = system.layout.start[row]..system.layout.start[row + 1];
                 let terms = entries.map(|e| dot(equation.rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
                 let rate: f64 = terms.sum();
@@ -274,4 +282,10 @@ impl Newton {
         }
         equation.constrain(system, Motion::<D> { q, qd });
     }
+}
+
+/// a > b, or a is no number: what is not finite counts as the worst of all.
+#[inline(always)]
+fn exceeds(a: f64, b: f64) -> bool {
+    a > b || a.is_nan()
 }
