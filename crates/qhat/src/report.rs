@@ -46,8 +46,17 @@ impl StepReport {
         }
     }
 
-    /// Adds a warning unless it is there already.
+    /// Adds a warning unless it is there already; of spent budgets the worst stays.
     pub(crate) fn warn(&mut self, warning: Warning) {
+        if let Warning::BudgetSpent { relative, .. } = warning {
+            let same = |other: &&mut Warning| matches!(other, Warning::BudgetSpent { .. });
+            if let Some(former) = self.warnings.iter_mut().find(same) {
+                if matches!(former, Warning::BudgetSpent { relative: before, .. } if *before < relative) {
+                    *former = warning;
+                }
+                return;
+            }
+        }
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }

@@ -215,6 +215,11 @@ impl System {
         })
     }
 
+    /// Whether a row is held at C = 0; a row that gives way (a rod with a compliance) is not.
+    pub fn is_rigid(&self, row: usize) -> bool {
+        self.softness[row].is_rigid()
+    }
+
     /// The applied forces, in the order they were added.
     pub fn forces(&self) -> &[Force] {
         &self.forces

@@ -62,7 +62,7 @@ pub struct Distance {
     pub form: DistanceForm,
     /// α [m/N], not negative; 0 is rigid.
     pub compliance: f64,
-    /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has none.
+    /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has no motion to damp.
     pub damping: f64,
 }
 
@@ -181,9 +181,6 @@ impl Holds for Distance {
         not_negative("the damping of a distance constraint", self.damping)?;
         if self.compliance > 0.0 && !(1.0 / self.compliance).is_finite() {
             return Err(format!("a compliance of {:e} m/N is too small to divide by; 0 is rigid", self.compliance));
-        }
-        if self.damping > 0.0 && self.compliance == 0.0 {
-            return Err("a rigid rod has no motion to damp: give it a compliance, too".into());
         }
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
             return Err("a rod with a compliance must be held in the length form".into());
