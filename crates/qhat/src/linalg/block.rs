@@ -143,14 +143,6 @@ pub(crate) fn divide<const D: usize>(factor: &Block<D>, x: [f64; D]) -> [f64; D]
     std::array::from_fn(|i| factor[i][i] * x[i])
 }
 
-/// A⁻¹ of a symmetric positive definite block; `None` where a pivot does not exceed `least`.
-#[inline(always)]
-pub(crate) fn inverse<const D: usize>(A: &Block<D>, least: f64) -> Option<Block<D>> {
-    let factor = ldl(A, least)?;
-    let unit = diagonal::<D>(1.0);
-    Some(std::array::from_fn(|i| backward(&factor, divide(&factor, forward(&factor, unit[i])))))
-}
-
 /// Σ over k < D, from the first on.
 #[inline(always)]
 fn sum<const D: usize>(term: impl Fn(usize) -> f64) -> f64 {

@@ -9,25 +9,25 @@
 //! H, g on the child, O = H_cp and w = g_p on its parent, n = g/|g|, γ = |g|:
 //!
 //! ```text
-//! T = Z (ZᵀHZ)⁻¹ Zᵀ, Z ⊥ n      what the child does across the row
+//! T = Z (ZᵀHZ)⁻¹ Zᵀ = Bᵀ P⁻¹ B    what the child does across the row, Z ⊥ n; P diagonal, B = L⁻¹ Zᵀ by LDLᵀ
 //! v = n − T H n,   â = nᵀ H v     what it does along it, the rest following
-//! P = (â γ; γ −E),  P⁻¹ = (E γ; γ −â)/(γ² + âE)
+//! S = (â γ; γ −E),  S⁻¹ = (E γ; γ −â)/(γ² + âE)
 //! u = Oᵀ v
-//! H_pp ← H_pp − Oᵀ T O − (u w) P⁻¹ (u w)ᵀ
-//! r_p  ← r_p − Oᵀ T r − (u w) P⁻¹ (v·r, s)
-//! and back:  (y, ν) = P⁻¹ (v·(r − O x_p), s − w·x_p),   x = T (r − O x_p) + v y
+//! H_pp ← H_pp − Oᵀ T O − (u w) S⁻¹ (u w)ᵀ
+//! r_p  ← r_p − Oᵀ T r − (u w) S⁻¹ (v·r, s)
+//! and back:  (y, ν) = S⁻¹ (v·(r − O x_p), s − w·x_p),   x = T (r − O x_p) + v y
 //! ```
 //!
-//! An edge without a row has T = H⁻¹ and no P. Nothing is squared and nothing is divided by E, so masses of 1e9:1 cost no
-//! digits. A hub of any degree costs no more than its edges.
+//! An edge without a row has T = H⁻¹ and no S. Nothing is squared and nothing is divided by E, so masses of 1e9:1 cost no
+//! digits; T stays in its factors, since a stiff spring or a penalty in H would cost an inverse its digits. A hub of any degree costs no more than its edges.
 //!
 //! A pivot across that is not positive (H need not be definite) is mended: first by taking out the indefinite part of its
 //! edge (`retreat`), then by adding to its diagonal. Both leave the right side alone, so that Newton's method stays right.
 //! Source: Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), extended by geometric stiffness.
 
 use super::block::{
-    Block, accumulate, diagonal, inverse, load, outer, plus, product, store, times, transposed, transposed_times,
-    vector,
+    Block, accumulate, diagonal, divide, forward, ldl, load, outer, plus, product, store, times, transposed,
+    transposed_times, vector, zero,
 };
 
 /// No parent, no row, no edge.
@@ -76,15 +76,16 @@ pub(crate) struct Saddle<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LeafToRoot {
     pub(crate) links: Vec<Link>,
-    /// T.
+    /// B and P⁻¹.
     across: Vec<f64>,
+    weight: Vec<f64>,
     /// O.
     coupling: Vec<f64>,
     /// v, u and w.
     along: Vec<f64>,
     lifted: Vec<f64>,
     above: Vec<f64>,
-    /// The entries 11, 12 and 22 of P⁻¹.
+    /// The entries 11, 12 and 22 of S⁻¹.
     pivot: Vec<[f64; 3]>,
 }
 
@@ -94,6 +95,7 @@ impl LeafToRoot {
         let blocks = || vec![0.0; links.len() * dimension * dimension];
         LeafToRoot {
             across: blocks(),
+            weight: vectors(),
             coupling: blocks(),
             along: vectors(),
             lifted: vectors(),
@@ -103,9 +105,8 @@ impl LeafToRoot {
         }
     }
 
-    /// Factors; returns how many pivots had to be mended.
-    pub(crate) fn factor<const D: usize>(&mut self, saddle: Saddle<'_>) -> usize {
-        let mut mended = 0;
+    /// Factors what has been assembled.
+    pub(crate) fn factor<const D: usize>(&mut self, saddle: Saddle<'_>) {
         for (k, link) in self.links.iter().enumerate() {
             let hangs = link.parent != NONE;
             let mut H = load::<D>(saddle.diagonal, link.node);
@@ -114,11 +115,10 @@ impl LeafToRoot {
             let length = norm(g);
             let n = g.map(|component| component / length);
             let least = LEAST_PIVOT * saddle.floor[link.node];
-            let across = |H: &Block<D>| if length > 0.0 { inverse_across(H, n, least) } else { inverse(H, least) };
+            let across = |H: &Block<D>| if length > 0.0 { factor_across(H, n, least) } else { factor_whole(H, least) };
 
             let mut T = across(&H);
             if T.is_none() {
-                mended += 1;
                 if hangs {
                     let retreat = load::<D>(saddle.retreat, link.edge);
                     H = plus(H, -1.0, retreat);
@@ -134,13 +134,13 @@ impl LeafToRoot {
                 }
             }
             // What is still no number is found by whoever looks at the solution.
-            let T = T.unwrap_or([[f64::NAN; D]; D]);
+            let T = T.unwrap_or(Across { B: [[f64::NAN; D]; D], weight: [f64::NAN; D] });
 
             let mut v = [0.0; D];
             let mut pivot = [0.0; 3];
             if length > 0.0 {
                 let Hn = times(&H, n);
-                let THn = times(&T, Hn);
+                let THn = T.times(Hn);
                 v = std::array::from_fn(|i| n[i] - THn[i]);
                 // Where compression leaves nothing along a soft row, its softness must not turn the pivot's sign.
                 let a = dot(Hn, v).max(-0.5 * length * length / saddle.softness[link.row]);
@@ -148,13 +148,18 @@ impl LeafToRoot {
                 let determinant = length * length + a * E;
                 pivot = [E / determinant, length / determinant, -a / determinant];
             }
-            store(&mut self.across, k, T);
+            store(&mut self.across, k, T.B);
+            put(&mut self.weight, k, T.weight);
             put(&mut self.along, k, v);
             self.pivot[k] = pivot;
             if hangs {
                 let w = if link.row != NONE { vector::<D>(saddle.rows, link.above) } else { [0.0; D] };
                 let u = transposed_times(&O, v);
-                let lifted = product(&transposed(&O), &product(&T, &O));
+                let BO = product(&T.B, &O);
+                let mut lifted = zero();
+                for (weight, row) in T.weight.into_iter().zip(BO) {
+                    lifted = plus(lifted, 1.0, outer(weight, row, row));
+                }
                 let [p, q, r] = pivot;
                 let rank_two = plus(outer(p, u, u), 1.0, outer(r, w, w));
                 let mixed = plus(outer(q, u, w), 1.0, outer(q, w, u));
@@ -165,7 +170,11 @@ impl LeafToRoot {
                 put(&mut self.above, k, w);
             }
         }
-        mended
+    }
+
+    #[inline(always)]
+    fn across<const D: usize>(&self, k: usize) -> Across<D> {
+        Across { B: load(&self.across, k), weight: vector(&self.weight, k) }
     }
 
     /// r ← x and s ← ν, for the blocks and rows of the forest.
@@ -176,7 +185,7 @@ impl LeafToRoot {
             }
             let own = vector::<D>(r, link.node);
             let (v, u, w) = (vector(&self.along, k), vector::<D>(&self.lifted, k), vector::<D>(&self.above, k));
-            let t = transposed_times(&load::<D>(&self.coupling, k), times(&load(&self.across, k), own));
+            let t = transposed_times(&load::<D>(&self.coupling, k), self.across(k).times(own));
             let second = if link.row == NONE { 0.0 } else { s[link.row] };
             let [a, b] = apply(self.pivot[k], [dot(v, own), second]);
             let parent = &mut r[link.parent * D..][..D];
@@ -195,7 +204,7 @@ impl LeafToRoot {
             }
             let v = vector::<D>(&self.along, k);
             let [y, nu] = apply(self.pivot[k], [dot(v, own), second]);
-            let t = times(&load::<D>(&self.across, k), own);
+            let t = self.across(k).times(own);
             put::<D>(r, link.node, std::array::from_fn(|i| t[i] + v[i] * y));
             if link.row != NONE {
                 s[link.row] = nu;
@@ -204,19 +213,45 @@ impl LeafToRoot {
     }
 }
 
-/// P⁻¹ x.
+/// S⁻¹ x.
 #[inline(always)]
 fn apply([p, q, r]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
     [p * x + q * y, q * x + r * y]
 }
 
-/// Z (ZᵀHZ)⁻¹ Zᵀ for the D − 1 directions Z across the unit vector n; `None` where a pivot does not exceed `least`.
+/// T = Bᵀ P⁻¹ B.
+struct Across<const D: usize> {
+    B: Block<D>,
+    /// The diagonal of P⁻¹.
+    weight: [f64; D],
+}
+
+impl<const D: usize> Across<D> {
+    /// T x.
+    #[inline(always)]
+    fn times(&self, x: [f64; D]) -> [f64; D] {
+        let Bx = times(&self.B, x);
+        transposed_times(&self.B, std::array::from_fn(|k| self.weight[k] * Bx[k]))
+    }
+}
+
+/// H⁻¹ in factors; `None` where a pivot does not exceed `least`.
 #[inline(always)]
-fn inverse_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Option<Block<D>> {
+fn factor_whole<const D: usize>(H: &Block<D>, least: f64) -> Option<Across<D>> {
+    let factor = ldl(H, least)?;
+    let columns = diagonal::<D>(1.0).map(|unit| forward(&factor, unit));
+    Some(Across { B: transposed(&columns), weight: divide(&factor, [1.0; D]) })
+}
+
+/// Z (ZᵀHZ)⁻¹ Zᵀ in factors, for the D − 1 directions Z across the unit vector n; `None` where a pivot does not exceed `least`.
+#[inline(always)]
+fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Option<Across<D>> {
+    let (mut B, mut weight) = (zero(), [0.0; D]);
     if D == 2 {
-        let t = std::array::from_fn(|i| if i == 0 { -n[1] } else { n[0] });
-        let pivot = dot(t, times(H, t));
-        return (pivot > least).then(|| outer(1.0 / pivot, t, t));
+        B[0] = std::array::from_fn(|i| if i == 0 { -n[1] } else { n[0] });
+        let pivot = dot(B[0], times(H, B[0]));
+        weight[0] = 1.0 / pivot;
+        return (pivot > least).then_some(Across { B, weight });
     }
     // Two vectors across n without a branch that could divide by zero: Duff et al., Building an orthonormal basis, revisited,
     // J. Computer Graphics Techniques 6 (2017).
@@ -227,10 +262,10 @@ fn inverse_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Opti
     let second = [b, sign + n[1] * n[1] * a, -n[1]];
     let (s, t): ([f64; D], [f64; D]) = (std::array::from_fn(|i| first[i]), std::array::from_fn(|i| second[i]));
     let (Hs, Ht) = (times(H, s), times(H, t));
-    let projected = [[dot(s, Hs), dot(s, Ht)], [dot(s, Ht), dot(t, Ht)]];
-    let [[ss, st], [_, tt]] = inverse::<2>(&projected, least)?;
-    let mixed = plus(outer(st, s, t), 1.0, outer(st, t, s));
-    Some(plus(plus(outer(ss, s, s), 1.0, outer(tt, t, t)), 1.0, mixed))
+    let factor = ldl::<2>(&[[dot(s, Hs), 0.0], [dot(s, Ht), dot(t, Ht)]], least)?;
+    (B[0], B[1]) = (s, std::array::from_fn(|i| t[i] - factor[1][0] * s[i]));
+    (weight[0], weight[1]) = (factor[0][0], factor[1][1]);
+    Some(Across { B, weight })
 }
 
 #[inline(always)]

@@ -10,6 +10,8 @@
 mod graph;
 mod matrix;
 mod newton;
+#[cfg(test)]
+mod tests;
 
 pub(super) use newton::Base;
 
