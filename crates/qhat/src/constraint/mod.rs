@@ -1,6 +1,6 @@
 //! Constraints C(q) = 0, one kind a file, and the rows they make together.
 //!
-//! To add a kind: write one file here that derives C, Ċ, J and γ in its head and implements `Holds`, and name it in the
+//! To add a kind: write one file here that derives C, Ċ, J, γ and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
 mod distance;

@@ -1,6 +1,6 @@
 //! Applied forces: Q = Σ of every force acting on every particle [N], and the energy each of them stores or takes.
 //!
-//! To add a force: write one file here with `add`, `potential` and `power`, and name it in the list below.
+//! To add a force: write one file here with `add`, `potential`, `power`, `stiffness` and `tangent`, and name it in the list below.
 
 mod drag;
 mod gravity;

@@ -52,6 +52,8 @@ pub(super) struct Newton {
     /// What each node carries, h_e² |Q| + Σ |μ| |g|, and what the rounding of q does to its forces, over ε.
     load: Vec<f64>,
     rounding: Vec<f64>,
+    /// 1/scale of each row.
+    per_scale: Vec<f64>,
     /// The nearest iterate so far.
     best_q: Vec<f64>,
     best_mu: Vec<f64>,
@@ -103,6 +105,7 @@ impl Newton {
             s: vec![0.0; m],
             load: vec![0.0; nodes],
             rounding: vec![0.0; nodes],
+            per_scale: system.row_scale.iter().map(|scale| 1.0 / scale).collect(),
             best_q: vec![0.0; coordinates],
             best_mu: vec![0.0; m],
             matrix,
@@ -178,7 +181,7 @@ impl Newton {
         tried.equation.constrain(system, motion);
         system.add_applied_forces(motion, &mut tried.equation.Q);
         let (rows, Q) = (&tried.equation.rows, &tried.equation.Q);
-        let Newton { matrix, mu, r, s, load, rounding, .. } = self;
+        let Newton { matrix, mu, r, s, load, rounding, per_scale, .. } = self;
         for (r, id) in r.chunks_exact_mut(D).zip(&matrix.graph.particle) {
             let m = system.mass[id.0];
             for (k, r) in r.iter_mut().enumerate() {
@@ -205,9 +208,13 @@ impl Newton {
                 continue;
             }
             let soft = &system.softness[row];
-            let missing = rows.C[row] + soft.compliance * (soft.damping * rows.Cd[row] + mu[row] / (h_e * h_e));
-            s[row] = -missing / soft.lag(h_e);
-            let scale = system.row_scale[row];
+            s[row] = if soft.is_rigid() {
+                -rows.C[row]
+            } else {
+                let lambda = mu[row] / (h_e * h_e);
+                -(rows.C[row] + soft.compliance * (soft.damping * rows.Cd[row] + lambda)) / soft.lag(h_e)
+            };
+            let per_scale = per_scale[row];
             for entry in system.layout.start[row]..system.layout.start[row + 1] {
                 let node = matrix.graph.entry_node[entry];
                 if node != NONE {
@@ -215,13 +222,14 @@ impl Newton {
                     for (r, g) in r[node * D..][..D].iter_mut().zip(g) {
                         *r += mu[row] * g;
                     }
-                    let size = norm(g);
-                    let pull = (mu[row] * size).abs();
+                    // |g| to within √D, without a root: what it bounds is known no better.
+                    let size: f64 = g.iter().map(|g| g.abs()).sum();
+                    let pull = mu[row].abs() * size;
                     load[node] += pull;
-                    rounding[node] += pull * size * farthest / scale;
+                    rounding[node] += pull * size * farthest * per_scale;
                 }
             }
-            let relative = (s[row] / scale).abs();
+            let relative = s[row].abs() * per_scale;
             if exceeds(relative, miss.relative) {
                 miss = Miss { worst: relative / within, row, relative };
             }
@@ -251,7 +259,7 @@ impl Newton {
         /// The factor belongs to a q next door: each pass gains as many digits as J has in common there, four or more.
         const PASSES: usize = 4;
         /// A rate below this part of the fastest particle's speed over the extent is roundoff.
-        const CONSISTENT: f64 = 1e-14;
+        const CONSISTENT: f64 = 1e-13;
         let fastest = qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         for _ in 0..PASSES {
             self.r.fill(0.0);
@@ -262,7 +270,7 @@ impl Newton {
                 let terms = entries.map(|e| dot(equation.rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
                 let rate: f64 = terms.sum();
                 self.s[row] = if takes_part { -rate } else { 0.0 };
-                worst = worst.max(self.s[row].abs() / system.row_scale[row]);
+                worst = worst.max(self.s[row].abs() * self.per_scale[row]);
             }
             if worst * system.extent <= CONSISTENT * fastest {
                 break;
