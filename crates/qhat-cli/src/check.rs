@@ -124,7 +124,9 @@ impl Findings {
         let system = &scene.system;
         let start = evaluate(system, &scene.state);
         let relative = |row: usize| start.residual[row].abs() / system.row_scales()[row];
-        let worst = (0..system.row_count()).max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
+        // A row that gives way is not violated by doing so.
+        let rigid = || (0..system.row_count()).filter(|&row| system.is_rigid(row));
+        let worst = rigid().max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
         let consistent = worst.is_none_or(|row| relative(row) <= scene.settings.constraint_tolerance);
 
         // The integrator that projects finds the nearest start at which all holds, and sees A bare of diagonal drag.
@@ -143,7 +145,7 @@ impl Findings {
 
         let free_particles = terms.inverse_masses.iter().filter(|&&w| w > 0.0).count();
         let coordinates = free_particles * system.dimension();
-        let rows = rows_on_free_particles(&terms);
+        let rows = rigid().filter(|&row| is_on_free_particle(&terms, row)).count();
         // Where the constraints cannot hold, the rank is that of no configuration the system can be in.
         let rank = terms.rank.filter(|_| feasible);
         Findings {
@@ -155,7 +157,7 @@ impl Findings {
             rods: system.rods().count(),
             rows: system.row_count(),
             rows_on_free_particles: rows,
-            max_residual_at_start: start.residual.iter().fold(0.0, |max: f64, residual| max.max(residual.abs())),
+            max_residual_at_start: rigid().fold(0.0, |max: f64, row| max.max(start.residual[row].abs())),
             worst_row_at_start: worst.filter(|_| !consistent).map(|row| system.row_names()[row].clone()),
             consistent_at_start: consistent,
             feasible,
@@ -221,10 +223,8 @@ impl Findings {
     }
 }
 
-fn rows_on_free_particles(terms: &Terms) -> usize {
-    let jacobian = &terms.jacobian;
-    let free = |row: &usize| jacobian.row(*row).any(|(particle, _)| terms.inverse_masses[particle.0] > 0.0);
-    (0..jacobian.row_count()).filter(free).count()
+fn is_on_free_particle(terms: &Terms, row: usize) -> bool {
+    terms.jacobian.row(row).any(|(particle, _)| terms.inverse_masses[particle.0] > 0.0)
 }
 
 fn redundancy(states_of_self_stress: usize) -> String {

@@ -1,7 +1,7 @@
 // The records that cross the border between the engine and the page. Field names, and in Terms also their order, are
 // those of the Rust structs; arrays are flat, particle after particle: x1 y1 x2 y2 …; SI units.
 
-export type IntegratorName = 'euler' | 'symplectic-euler' | 'rk4' | 'rattle' | 'dopri5' | 'dop853';
+export type IntegratorName = 'euler' | 'symplectic-euler' | 'rk4' | 'rattle' | 'dopri5' | 'dop853' | 'implicit' | 'bdf2';
 /** `mixed`: a scene may write each constraint in the form it likes */
 export type FormulationName = 'modern' | 'classic' | 'mixed';
 

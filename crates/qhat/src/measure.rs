@@ -48,12 +48,12 @@ fn kinetic<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
 }
 
 pub(crate) fn potential<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
-    system.forces.iter().map(|force| force.potential(motion, &system.mass)).sum()
+    system.all_forces().map(|force| force.potential(motion, &system.mass)).sum()
 }
 
 /// Power of all forces without a potential [W].
 pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
-    system.forces.iter().map(|force| force.power(motion)).sum()
+    system.all_forces().map(|force| force.power(motion)).sum()
 }
 
 /// The work the applied forces could do over the length of the system [J]: a scale for energies that has no zero point.
@@ -69,21 +69,22 @@ pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
 /// What is left of C = 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
-    /// max |C|.
+    /// max |C| over the rigid rows.
     pub(crate) residual: f64,
     /// max |Ċ|.
     pub(crate) residual_rate: f64,
     /// max |C| over the row's own scale, and the row.
     pub(crate) relative: f64,
     pub(crate) worst_row: usize,
-    /// max ||d| − r|/r over the rods.
+    /// max ||d| − r|/r over the rigid rods.
     pub(crate) relative_length: f64,
 }
 
 /// Reads the drift off evaluated rows.
 pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion<'_, D>) -> Drift {
     let mut drift = Drift::default();
-    for row in 0..rows.C.len() {
+    let rigid = |row: &usize| system.softness[*row].is_rigid();
+    for row in (0..rows.C.len()).filter(rigid) {
         drift.residual = drift.residual.max(rows.C[row].abs());
         drift.residual_rate = drift.residual_rate.max(rows.Cd[row].abs());
         let relative = rows.C[row].abs() / system.row_scale[row];
@@ -92,7 +93,9 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion
         }
     }
     for named in &system.constraints {
-        if let Constraint::Distance(rod) = &named.constraint {
+        if let Constraint::Distance(rod) = &named.constraint
+            && rod.compliance == 0.0
+        {
             let length = norm(minus(motion.x(rod.a), motion.x(rod.b)));
             drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
         }

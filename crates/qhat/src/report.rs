@@ -16,11 +16,11 @@ pub struct StepReport {
     pub iterations: usize,
     /// The smallest substep [s].
     pub smallest_substep: f64,
-    /// max |C| over the rows [C].
+    /// max |C| over the rigid rows [C].
     pub max_residual: f64,
-    /// max |Ċ| over the rows [C/s].
+    /// max |Ċ| over the rigid rows [C/s].
     pub max_residual_rate: f64,
-    /// max ||d| − r|/r over the rods.
+    /// max ||d| − r|/r over the rigid rods.
     pub max_relative_length_error: f64,
     /// Energies at the end.
     pub energy: Energy,
@@ -46,8 +46,17 @@ impl StepReport {
         }
     }
 
-    /// Adds a warning unless it is there already.
+    /// Adds a warning unless it is there already; of spent budgets the worst stays.
     pub(crate) fn warn(&mut self, warning: Warning) {
+        if let Warning::BudgetSpent { relative, .. } = warning {
+            let same = |other: &&mut Warning| matches!(other, Warning::BudgetSpent { .. });
+            if let Some(former) = self.warnings.iter_mut().find(same) {
+                if matches!(former, Warning::BudgetSpent { relative: before, .. } if *before < relative) {
+                    *former = warning;
+                }
+                return;
+            }
+        }
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
@@ -64,6 +73,17 @@ pub enum Warning {
         /// Their names.
         rows: Vec<String>,
     },
+    /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
+    BudgetSpent {
+        /// t of the end of the step [s].
+        time: f64,
+        /// Newton iterations of the frame.
+        iterations: usize,
+        /// The worst row.
+        row: String,
+        /// What it is off by, relative to its own size.
+        relative: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -76,6 +96,10 @@ impl fmt::Display for Warning {
                 f,
                 "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it (diagonal drag hides this)",
                 rows.join(", ")
+            ),
+            Warning::BudgetSpent { time, iterations, row, relative } => write!(
+                f,
+                "the frame budget ran out at t = {time:.4} s after {iterations} Newton iterations: `{row}` is off by {relative:.1e} of its size"
             ),
         }
     }

@@ -20,17 +20,23 @@ pub enum Integrator {
     Dopri5,
     /// Runge–Kutta of order 8 on the equation, projected after each step; substeps of its own choosing.
     Dop853,
+    /// Backward Euler solved at the end of the step, order 1, projected: takes any load at any h, and dissipates.
+    Implicit,
+    /// The backward differentiation formula of order 2, projected, with backward Euler for its hard steps.
+    Bdf2,
 }
 
 impl Integrator {
     /// All of them.
-    pub const ALL: [Integrator; 6] = [
+    pub const ALL: [Integrator; 8] = [
         Integrator::Euler,
         Integrator::SymplecticEuler,
         Integrator::Rk4,
         Integrator::Rattle,
         Integrator::Dopri5,
         Integrator::Dop853,
+        Integrator::Implicit,
+        Integrator::Bdf2,
     ];
 
     /// The name in scene files and commands.
@@ -42,6 +48,8 @@ impl Integrator {
             Integrator::Rattle => "rattle",
             Integrator::Dopri5 => "dopri5",
             Integrator::Dop853 => "dop853",
+            Integrator::Implicit => "implicit",
+            Integrator::Bdf2 => "bdf2",
         }
     }
 
@@ -50,16 +58,21 @@ impl Integrator {
         matches!(self, Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
+    /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in need).
+    pub fn is_implicit(self) -> bool {
+        matches!(self, Integrator::Implicit | Integrator::Bdf2)
+    }
+
     /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of [`Feedback`]).
     pub fn projects(self) -> bool {
-        matches!(self, Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
+        self.is_adaptive() || self.is_implicit()
     }
 
     /// Global order of convergence in h.
     pub fn order(self) -> u32 {
         match self {
-            Integrator::Euler | Integrator::SymplecticEuler => 1,
-            Integrator::Rattle => 2,
+            Integrator::Euler | Integrator::SymplecticEuler | Integrator::Implicit => 1,
+            Integrator::Rattle | Integrator::Bdf2 => 2,
             Integrator::Rk4 => 4,
             Integrator::Dopri5 => 5,
             Integrator::Dop853 => 8,
@@ -125,6 +138,9 @@ pub struct Settings {
     pub constraint_tolerance: f64,
     /// Of adaptive integrators: substeps in one frame after which they give up, ≥ 1, default 200 000.
     pub max_substeps: usize,
+    /// Of implicit and bdf2: Newton iterations a frame, ≥ 1, default 10 000. A count and not a time, so that the same input
+    /// gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far that is.
+    pub frame_budget: usize,
 }
 
 impl Default for Settings {
@@ -135,6 +151,7 @@ impl Default for Settings {
             tolerance: 1e-4,
             constraint_tolerance: 1e-10,
             max_substeps: 200_000,
+            frame_budget: 10_000,
         }
     }
 }
@@ -150,7 +167,9 @@ impl Settings {
         let tolerance = self.constraint_tolerance;
         in_range("constraint_tolerance", tolerance, (1e-14..=1e-2).contains(&tolerance), "from 1e-14 to 1e-2")?;
         let substeps = self.max_substeps;
-        in_range("max_substeps", substeps as f64, substeps >= 1, "at least 1")
+        in_range("max_substeps", substeps as f64, substeps >= 1, "at least 1")?;
+        let budget = self.frame_budget;
+        in_range("frame_budget", budget as f64, budget >= 1, "at least 1")
     }
 }
 

@@ -298,7 +298,7 @@ impl Simulation {
         const DAMPING_RATIO: f64 = 0.65;
         let mass = self.system.connected_mass(particle);
         let (mut stiffness, mut damping) = (mass * FREQUENCY * FREQUENCY, 2.0 * DAMPING_RATIO * mass * FREQUENCY);
-        if !self.settings.integrator.is_adaptive() {
+        if !self.settings.integrator.is_adaptive() && !self.settings.integrator.is_implicit() {
             // A light particle on a heavy body feels the whole spring; steps of a fixed h must remain stable for it alone.
             let h = self.settings.h;
             let w = self.system.inverse_mass.get(particle.0).copied().unwrap_or(0.0);

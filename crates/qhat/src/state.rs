@@ -1,6 +1,6 @@
 //! State: where everything is, and all that a restart needs to go on with the same bits.
 
-/// q, q̇ and t, the energy account, and what an adaptive integrator carries from frame to frame.
+/// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     pub(crate) q: Vec<f64>,
@@ -28,7 +28,7 @@ impl Work {
     }
 }
 
-/// What an adaptive integrator carries from one frame to the next.
+/// What an integrator carries from one frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Carry {
     /// The last multipliers, the first guess of the next.
@@ -37,6 +37,17 @@ pub(crate) struct Carry {
     pub(crate) substep: f64,
     /// Whether A was found singular at this state.
     pub(crate) deficient: bool,
+    /// Where the last step began, for a method that looks back.
+    pub(crate) previous: Option<Previous>,
+}
+
+/// The state before the last step of a method that solves at the end of the step.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Previous {
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    /// The length of that step [s].
+    pub(crate) h: f64,
 }
 
 impl State {

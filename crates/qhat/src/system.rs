@@ -1,7 +1,7 @@
 //! System: which particles, constraints and forces there are. What is connected to what never changes once it is built;
 //! the numbers of forces and feedback may.
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows, Softness};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
 use crate::lanes::Plan;
@@ -129,11 +129,14 @@ pub struct System {
     pub(crate) constraints: Vec<NamedConstraint>,
     pub(crate) row_names: Vec<String>,
     pub(crate) row_scale: Vec<f64>,
+    pub(crate) softness: Vec<Softness>,
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
     /// Where its chains lie in lanes, if it has nothing else.
     pub(crate) plan: Option<Plan>,
     pub(crate) forces: Vec<Force>,
+    /// Constraints that give way, as forces.
+    pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
 }
@@ -235,6 +238,11 @@ impl System {
         &self.matrix.components
     }
 
+    /// Whether a row is held at C = 0; a row that gives way (a rod with a compliance) is not.
+    pub fn is_rigid(&self, row: usize) -> bool {
+        self.softness[row].is_rigid()
+    }
+
     /// The applied forces, in the order they were added.
     pub fn forces(&self) -> &[Force] {
         &self.forces
@@ -288,12 +296,30 @@ impl System {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
     }
 
-    /// Q = Σ of every force.
-    pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
+    /// Q without the constraints that give way, for methods that solve their rows.
+    pub(crate) fn add_applied_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
         Q.fill(0.0);
         for force in &self.forces {
             force.add(motion, &self.mass, Q);
         }
+    }
+
+    /// Q = Σ of every force, those of constraints that give way among them.
+    pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
+        self.add_applied_forces(motion, Q);
+        for force in &self.compliant {
+            force.add(motion, &self.mass, Q);
+        }
+    }
+
+    /// Every force, those of constraints that give way among them.
+    pub(crate) fn all_forces(&self) -> impl Iterator<Item = &Force> {
+        self.forces.iter().chain(&self.compliant)
+    }
+
+    /// One of them by its place among them.
+    pub(crate) fn force(&self, number: usize) -> &Force {
+        self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
     }
 
     /// Writes the constraints and all that follows from what they connect.
@@ -302,6 +328,8 @@ impl System {
         self.constraints.clear();
         self.row_names.clear();
         self.row_scale.clear();
+        self.softness.clear();
+        self.compliant.clear();
         for (name, constraint) in constraints {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
@@ -312,6 +340,8 @@ impl System {
                 rows => self.row_names.extend((0..rows).map(|k| format!("{name}[{k}]"))),
             }
             self.row_scale.resize(self.row_names.len(), constraint.scale(self.extent));
+            self.softness.resize(self.row_names.len(), constraint.softness());
+            self.compliant.extend(constraint.as_force());
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
@@ -319,7 +349,7 @@ impl System {
     }
 
     fn plan_matrix(&self) -> MatrixPlan {
-        MatrixPlan::new(&self.layout, &self.inverse_mass, self.dimension())
+        MatrixPlan::new(&self.layout, &self.inverse_mass, &self.softness, self.dimension())
     }
 }
 
@@ -376,10 +406,12 @@ impl SystemBuilder {
             constraints: Vec::new(),
             row_names: Vec::new(),
             row_scale: Vec::new(),
+            softness: Vec::new(),
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
             plan: None,
             forces: self.forces,
+            compliant: Vec::new(),
             feedback: self.feedback,
             extent,
         };

@@ -1,6 +1,6 @@
 //! Terms: every symbol of one evaluation of the equation, in the order in which they are computed. The glass box.
 
-use crate::constraint::{Constraint, Jacobian};
+use crate::constraint::{Constraint, Distance, Jacobian};
 use crate::integrate::Workspace;
 use crate::linalg::SymmetricMatrix;
 use crate::multiplier::Equation;
@@ -21,7 +21,7 @@ pub struct Terms {
     pub velocities: Vec<f64>,
     /// W, one number a particle, n [1/kg].
     pub inverse_masses: Vec<f64>,
-    /// Q, N [N].
+    /// Q, those of rods that give way included, N [N].
     pub applied_forces: Vec<f64>,
     /// C, m [C].
     pub residual: Vec<f64>,
@@ -45,7 +45,7 @@ pub struct Terms {
     pub right_hand_side: Vec<f64>,
     /// λ, m [J/C].
     pub multipliers: Vec<f64>,
-    /// Q̂ = s Jᵀλ, as applied, N [N].
+    /// Q̂ = s Jᵀλ over the rigid rows, as applied, N [N].
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,
@@ -173,11 +173,12 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
     }
 }
 
-/// Signed tension of every rod [N] for given multipliers, as applied (s λ).
+/// Signed tension of every rod [N] for given multipliers, as applied: s λ, or λ for a rod that gives way.
 fn tension<const D: usize>(system: &System, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> Vec<f64> {
     let rods = system.constraints.iter().filter_map(|named| match &named.constraint {
         Constraint::Distance(rod) => Some((rod, lambda[named.first_row])),
         Constraint::Nail(_) => None,
     });
-    rods.map(|(rod, multiplier)| rod.tension(motion, s * multiplier)).collect()
+    let applied = |rod: &Distance| if rod.compliance > 0.0 { 1.0 } else { s };
+    rods.map(|(rod, multiplier)| rod.tension(motion, applied(rod) * multiplier)).collect()
 }

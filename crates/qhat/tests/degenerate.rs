@@ -137,8 +137,14 @@ fn redundant_rows_share_the_load() {
             reference.step().unwrap();
         }
         let (a, b) = (simulation.state().positions()[2], reference.state().positions()[2]);
-        assert_close(&format!("x under {integrator}"), a, b, 1e-9); // roundoff of a second's motion
-        assert!(simulation.step().unwrap().warnings.contains(&Warning::Singular));
+        // Roundoff of a second's motion; an implicit step is solved to 1e-10 only, and what is missing is carried on as
+        // velocity.
+        let allowed = if integrator.is_implicit() { 1e-8 } else { 1e-9 };
+        assert_close(&format!("x under {integrator}"), a, b, allowed);
+        // A method that solves at the end of the step forms no A; whoever asks for the terms is told.
+        let report = simulation.step().unwrap();
+        let warnings = if integrator.is_implicit() { simulation.terms().warnings } else { report.warnings };
+        assert!(warnings.contains(&Warning::Singular), "{integrator}");
     }
 }
 
@@ -148,7 +154,7 @@ fn coincident_particles() {
         let mut builder = plane();
         let a = builder.particle(Particle::at("a", [0.3, 0.4]));
         let b = builder.particle(Particle::at("b", [0.3, 0.4]));
-        builder.constraint("rod", Distance { a, b, length: 1.0, form }).force(systems::gravity());
+        builder.constraint("rod", Distance { form, ..Distance::new(a, b, 1.0) }).force(systems::gravity());
         builder.force(qhat::Spring { a, b, stiffness: 10.0, damping: 1.0, rest: 0.5 });
         let (system, state) = builder.build().unwrap();
         let terms = evaluate(&system, &state);

@@ -89,7 +89,7 @@ fn away(x: &[&[f64]]) -> Vec<f64> {
 
 fn rod(form: DistanceForm) -> Constraint {
     // The end with the higher number first: the blocks of a row need not be in order.
-    Distance { a: ParticleId(2), b: ParticleId(0), length: R, form }.into()
+    Distance { form, ..Distance::new(ParticleId(2), ParticleId(0), R) }.into()
 }
 
 fn nail(form: NailForm) -> Constraint {

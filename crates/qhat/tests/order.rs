@@ -98,6 +98,16 @@ fn rattle_is_of_order_two() {
     check(Integrator::Rattle, &[200, 400, 800], 0.1);
 }
 
+#[test]
+fn implicit_is_of_order_one() {
+    check(Integrator::Implicit, &[2000, 4000, 8000], 0.1);
+}
+
+#[test]
+fn bdf2_is_of_order_two() {
+    check(Integrator::Bdf2, &[400, 800, 1600], 0.1);
+}
+
 /// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors their
 /// square. Substeps are chosen from an estimate, so the power is not exact.
 #[test]

@@ -75,7 +75,7 @@ fn hanging(form: DistanceForm) -> Terms {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.5, 1.0]).held());
     let bob = builder.particle(Particle::at("bob", [0.5, -1.5]).with_mass(2.0));
-    builder.constraint("rod", Distance { a: pivot, b: bob, length: 2.5, form }).force(systems::gravity());
+    builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     evaluate(&system, &state)
 }

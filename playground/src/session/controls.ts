@@ -103,6 +103,8 @@ export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
   dopri5:
     'Order five with substeps of its own choosing, projected after each: accurate and cheap for small systems.',
   dop853: 'Order eight with substeps of its own choosing, projected after each: the most accurate one here.',
+  implicit: 'Backward Euler solved at the end of the step: takes any load at any h, and loses energy.',
+  bdf2: 'Order two, solved at the end of the step: takes any load at any h, and loses far less energy.',
 };
 
 export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {

@@ -117,7 +117,8 @@ impl Job {
                 Err(error) => return Ok(Some(Stop::Error(error))),
             }
             if self.recorder.is_some() {
-                self.record(self.frames.time(index), &simulation.terms())?;
+                let terms = simulation.terms();
+                self.record(simulation.system(), self.frames.time(index), &terms)?;
             } else {
                 self.tally.frames += 1;
             }
@@ -128,11 +129,11 @@ impl Job {
 
     fn start(&mut self, system: &System, terms: &Terms) -> Result<(), Failure> {
         self.tally.start(system, terms);
-        self.record(0.0, terms)
+        self.record(system, 0.0, terms)
     }
 
-    fn record(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
-        self.tally.frame(terms);
+    fn record(&mut self, system: &System, time: f64, terms: &Terms) -> Result<(), Failure> {
+        self.tally.frame(system, terms);
         match &mut self.recorder {
             Some(recorder) => recorder.frame(time, terms),
             None => Ok(()),

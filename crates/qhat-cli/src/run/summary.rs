@@ -3,7 +3,7 @@
 use super::origin::{Origin, Status};
 use crate::failure::Failure;
 use crate::print::{self, count, small};
-use qhat::{Simulation, StepReport, System, Terms};
+use qhat::{Simulation, StepReport, System, Terms, Warning};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -24,22 +24,25 @@ pub(crate) struct Tally {
     pub(super) time_reached: f64,
     pub(super) cpu: Duration,
     pub(super) warnings: Vec<String>,
+    /// Of the frames whose budget ran out, the one that ended farthest off: its place among the warnings, and how far.
+    worst_budget: Option<(usize, f64)>,
 }
 
 impl Tally {
     /// Notes the start: what is violated there counts as well.
     pub(super) fn start(&mut self, system: &System, terms: &Terms) {
-        for rod in system.rods() {
+        for rod in system.rods().filter(|rod| system.is_rigid(rod.row)) {
             let relative = terms.residual[rod.row].abs() / system.row_scales()[rod.row];
             self.max_relative_length_error = self.max_relative_length_error.max(relative);
         }
     }
 
     /// Notes a frame that is evaluated.
-    pub(super) fn frame(&mut self, terms: &Terms) {
+    pub(super) fn frame(&mut self, system: &System, terms: &Terms) {
         self.frames += 1;
-        self.max_residual = terms.residual.iter().fold(self.max_residual, |max, residual| max.max(residual.abs()));
-        terms.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
+        let rigid = (0..system.row_count()).filter(|&row| system.is_rigid(row));
+        self.max_residual = rigid.fold(self.max_residual, |max, row| max.max(terms.residual[row].abs()));
+        terms.warnings.iter().for_each(|warning| self.warn(warning));
     }
 
     /// Notes what it took to get to the next frame.
@@ -48,7 +51,7 @@ impl Tally {
         self.rejected += report.rejected;
         self.max_residual = self.max_residual.max(report.max_residual);
         self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
-        report.warnings.iter().for_each(|warning| self.warn(warning.to_string()));
+        report.warnings.iter().for_each(|warning| self.warn(warning));
     }
 
     /// Notes where the simulation stands, be it at a frame or where a step failed.
@@ -58,9 +61,18 @@ impl Tally {
         self.energy_error_max = simulation.energy_error_max();
     }
 
-    fn warn(&mut self, warning: String) {
-        if !self.warnings.contains(&warning) {
-            self.warnings.push(warning);
+    fn warn(&mut self, warning: &Warning) {
+        let words = warning.to_string();
+        if let Warning::BudgetSpent { relative, .. } = *warning {
+            match self.worst_budget {
+                Some((_, before)) if before >= relative => return,
+                Some((place, _)) => self.warnings[place] = words,
+                None => self.warnings.push(words),
+            }
+            let place = self.worst_budget.map_or(self.warnings.len() - 1, |(place, _)| place);
+            self.worst_budget = Some((place, relative));
+        } else if !self.warnings.contains(&words) {
+            self.warnings.push(words);
         }
     }
 }

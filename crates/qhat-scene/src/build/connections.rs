@@ -68,7 +68,8 @@ impl Assembly<'_, '_, '_> {
             Some(Name(name)) => name.clone(),
             None => self.free_constraint_name(format!("{one}-{other}")),
         };
-        self.builder.constraint(name, qhat::Distance { a, b, length, form: distance.form.into() });
+        let rod = qhat::Distance::new(a, b, length).with_compliance(distance.compliance, distance.damping);
+        self.builder.constraint(name, qhat::Distance { form: distance.form.into(), ..rod });
         Some(())
     }
 

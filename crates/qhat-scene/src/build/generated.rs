@@ -91,9 +91,10 @@ impl Assembly<'_, '_, '_> {
                 self.report.error(place.clone(), message, Some("give its particles different places".into()));
                 return None;
             }
-            Link::Rod(RodLink { form }) => {
+            Link::Rod(RodLink { form, compliance, damping }) => {
                 let name = self.free_constraint_name(format!("{}-{}", a.1, b.1));
-                self.builder.constraint(name, Distance { a: first, b: second, length, form: (*form).into() });
+                let rod = Distance::new(first, second, length).with_compliance(*compliance, *damping);
+                self.builder.constraint(name, Distance { form: (*form).into(), ..rod });
             }
             Link::Spring(SpringLink { stiffness, damping }) => {
                 let (stiffness, damping) = (*stiffness, *damping);

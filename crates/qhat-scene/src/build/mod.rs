@@ -57,6 +57,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         integrator: step.integrator.0,
         tolerance: step.tolerance,
         constraint_tolerance: step.constraint_tolerance,
+        frame_budget: step.frame_budget as usize,
         ..Settings::default()
     };
     if let Err(error) = settings.check() {

@@ -11,7 +11,7 @@
 //! Ċ  = n·u
 //! J  = nᵀ on a, −nᵀ on b
 //! γ  = (u·u − (n·u)²)/|d|        since C̈ = n·u̇ + ṅ·u and ṅ = (u − n (n·u))/|d|
-//! |∂²C/∂x²| = |I − nnᵀ|/|d| = 1/|d|
+//! ∂²C/∂x² = (I − nnᵀ)/|d| on aa and bb, its negative on ab;  its norm is 1/|d|
 //! ```
 //!
 //! squared form (the source's, with the −r² it forgot), [C] = m², λ in N/m, tension = −2|d|λ:
@@ -21,14 +21,21 @@
 //! Ċ  = 2 d·u
 //! J  = 2dᵀ on a, −2dᵀ on b
 //! γ  = 2 u·u
-//! |∂²C/∂x²| = 2
+//! ∂²C/∂x² = 2 I on aa and bb, −2 I on ab
 //! ```
+//!
+//! A rod of compliance α [m/N] and damping c [N·s/m] gives way: C + α λ + α c Ċ = 0 in the length form, so that at rest it is
+//! longer by α T. α = 0 is rigid. Methods that solve at the end of the step solve this row with the others; for all others it is
+//! what it is physically, a spring of stiffness 1/α with a damper c beside it, and takes no part in A. λ and tension mean
+//! the same in both.
 //!
 //! Fails at |d| = 0: the length form has no direction there and takes the first axis with γ = 0 (any unit vector is
 //! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
-use super::{Formulation, Holds, RowWriter};
+use super::{Formulation, Holds, RowWriter, Softness};
+use crate::force::{Force, Spring, not_negative};
+use crate::linalg::block::{Block, diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, minus, norm, scaled};
 use crate::system::ParticleId;
 
@@ -53,12 +60,21 @@ pub struct Distance {
     pub length: f64,
     /// The function that is held at zero.
     pub form: DistanceForm,
+    /// α [m/N], not negative; 0 is rigid.
+    pub compliance: f64,
+    /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has no motion to damp.
+    pub damping: f64,
 }
 
 impl Distance {
     /// A rod of the given length [m] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Distance { a, b, length, form: DistanceForm::Length }
+        Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0 }
+    }
+
+    /// The same with a compliance [m/N] and a damping [N·s/m].
+    pub fn with_compliance(self, compliance: f64, damping: f64) -> Self {
+        Distance { compliance, damping, ..self }
     }
 
     /// Signed tension [N] of a multiplier of this row, positive where the rod pulls its ends together.
@@ -109,6 +125,15 @@ impl Holds for Distance {
         }
     }
 
+    fn softness(&self) -> Softness {
+        Softness { compliance: self.compliance, damping: self.damping }
+    }
+
+    fn as_force(&self) -> Option<Force> {
+        let Distance { a, b, length, compliance, damping, .. } = *self;
+        (compliance > 0.0).then(|| Spring { a, b, stiffness: 1.0 / compliance, damping, rest: length }.into())
+    }
+
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
         match self.form {
             DistanceForm::Length => {
@@ -119,9 +144,24 @@ impl Holds for Distance {
         }
     }
 
+    fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+        match self.form {
+            DistanceForm::Length => {
+                let d = minus(motion.x(self.a), motion.x(self.b));
+                let length = norm(d);
+                let n = scaled(1.0 / length, d);
+                let stiffness = -lambda[0] / length;
+                (length > 0.0).then(|| plus(diagonal(stiffness), -stiffness, outer(1.0, n, n)))
+            }
+            DistanceForm::Squared => Some(diagonal(-2.0 * lambda[0])),
+        }
+    }
+
     fn formulated(&self, formulation: Formulation) -> Self {
         let form = match formulation {
             Formulation::Modern => DistanceForm::Length,
+            // A rod that gives way is a spring, in every formulation.
+            Formulation::Classic if self.compliance > 0.0 => DistanceForm::Length,
             Formulation::Classic => DistanceForm::Squared,
         };
         Distance { form, ..self.clone() }
@@ -131,10 +171,21 @@ impl Holds for Distance {
         if self.a == self.b {
             return Err("a distance constraint needs two different particles".into());
         }
-        if self.length.is_finite() && self.length > 0.0 {
-            return Ok(());
+        if !(self.length.is_finite() && self.length > 0.0) {
+            return Err(format!(
+                "the length of a distance constraint must be positive and finite, but is {}",
+                self.length
+            ));
         }
-        Err(format!("the length of a distance constraint must be positive and finite, but is {}", self.length))
+        not_negative("the compliance of a distance constraint", self.compliance)?;
+        not_negative("the damping of a distance constraint", self.damping)?;
+        if self.compliance > 0.0 && !(1.0 / self.compliance).is_finite() {
+            return Err(format!("a compliance of {:e} m/N is too small to divide by; 0 is rigid", self.compliance));
+        }
+        if self.compliance > 0.0 && self.form == DistanceForm::Squared {
+            return Err("a rod with a compliance must be held in the length form".into());
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Constraints C(q) = 0, one kind a file, and the rows they make together.
 //!
-//! To add a kind: write one file here that derives C, Ċ, J and γ in its head and implements `Holds`, and name it in the
+//! To add a kind: write one file here that derives C, Ċ, J, γ and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
 mod distance;
@@ -12,6 +12,8 @@ pub use nail::{Nail, NailForm};
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
 
+use crate::force::Force;
+use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::system::ParticleId;
 
@@ -29,14 +31,49 @@ pub(crate) trait Holds {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
+    /// How far its rows give way.
+    fn softness(&self) -> Softness {
+        Softness::default()
+    }
+
+    /// What rows that give way are to a method that does not solve at the end of the step.
+    fn as_force(&self) -> Option<Force> {
+        None
+    }
+
     /// A bound on the norm of one block of ∂²C/∂q² [C/m²]: times |λ| it is geometric stiffness.
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
+
+    /// Geometric stiffness −Σ λ ∂²C/∂q² for the multipliers of its rows [N/m]: the block that stands on the diagonal of each
+    /// of its particles and, with the sign turned, between two of them; semidefinite of either sign. `None` where it is zero.
+    fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>>;
 
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
+}
+
+/// How far a row gives way: C + α λ + α c Ċ = 0. [α] = m/N, [c] = N·s/m for a rod.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Softness {
+    /// α ≥ 0; zero is rigid.
+    pub(crate) compliance: f64,
+    /// c ≥ 0, of a damper beside the compliance.
+    pub(crate) damping: f64,
+}
+
+impl Softness {
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.compliance == 0.0
+    }
+
+    /// 1 + α c/h: how much faster C must follow where its rate is C/h.
+    #[inline(always)]
+    pub(crate) fn lag(&self, h: f64) -> f64 {
+        1.0 + self.compliance * self.damping / h
+    }
 }
 
 /// Which forms of the constraints are in use.
@@ -71,8 +108,17 @@ macro_rules! constraints {
             fn scale(&self, extent: f64) -> f64 {
                 match self { $(Constraint::$kind(constraint) => constraint.scale(extent),)* }
             }
+            fn softness(&self) -> Softness {
+                match self { $(Constraint::$kind(constraint) => constraint.softness(),)* }
+            }
+            fn as_force(&self) -> Option<Force> {
+                match self { $(Constraint::$kind(constraint) => constraint.as_force(),)* }
+            }
             fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
                 match self { $(Constraint::$kind(constraint) => constraint.curvature(motion),)* }
+            }
+            fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+                match self { $(Constraint::$kind(constraint) => constraint.geometric_stiffness(motion, lambda),)* }
             }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }

@@ -9,13 +9,14 @@
 //! scalar form (the source's), one row, [C] = m², λ in N/m:
 //!
 //! ```text
-//! C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   |∂²C/∂x²| = 2
+//! C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   ∂²C/∂x² = 2 I
 //! ```
 //!
 //! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
 //! That is why the source needed its diagonal drag.
 
 use super::{Formulation, Holds, RowWriter};
+use crate::linalg::block::{Block, diagonal};
 use crate::point::{Motion, dot, first, minus, scaled};
 use crate::system::ParticleId;
 
@@ -86,6 +87,13 @@ impl Holds for Nail {
         match self.form {
             NailForm::Vector => 0.0,
             NailForm::Scalar => 2.0,
+        }
+    }
+
+    fn geometric_stiffness<const D: usize>(&self, _: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+        match self.form {
+            NailForm::Vector => None,
+            NailForm::Scalar => Some(diagonal(-2.0 * lambda[0])),
         }
     }
 

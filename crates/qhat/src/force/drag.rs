@@ -5,7 +5,8 @@
 //! power = −kd Σ v_i · v_i        [W]
 //! ```
 
-use super::{Acts, Dependence, not_negative};
+use super::{Acts, Dependence, Tangent, not_negative};
+use crate::linalg::block::{diagonal, zero};
 use crate::point::{Motion, add, dot, scaled};
 use crate::system::ParticleId;
 
@@ -42,6 +43,20 @@ impl Acts for Drag {
 
     fn dependence(&self) -> Dependence {
         Dependence::Drag(self.coefficient)
+    }
+
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+    ) {
+        let definite = diagonal(rate * self.coefficient);
+        if self.coefficient > 0.0 {
+            for i in 0..motion.q.len() / D {
+                visit(&[ParticleId(i)], Tangent { definite, geometric: zero() });
+            }
+        }
     }
 
     fn particles(&self) -> Vec<ParticleId> {

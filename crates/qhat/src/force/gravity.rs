@@ -5,7 +5,7 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence, Tangent, finite};
 use crate::point::{Motion, add, dot, first, scaled};
 use crate::system::ParticleId;
 
@@ -38,6 +38,8 @@ impl Acts for Gravity {
     fn dependence(&self) -> Dependence {
         Dependence::Nothing
     }
+
+    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
 
     fn particles(&self) -> Vec<ParticleId> {
         Vec::new()

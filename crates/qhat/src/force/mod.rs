@@ -1,6 +1,6 @@
 //! Applied forces: Q = Σ of every force acting on every particle [N], and the energy each of them stores or takes.
 //!
-//! To add a force: write one file here with `add`, `potential` and `power`, and name it in the list below.
+//! To add a force: write one file here with `add`, `potential`, `power`, `stiffness` and `tangent`, and name it in the list below.
 
 mod drag;
 mod gravity;
@@ -14,6 +14,7 @@ pub use mouse::MouseSpring;
 pub use point_force::PointForce;
 pub use spring::Spring;
 
+use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::system::ParticleId;
 
@@ -35,6 +36,15 @@ pub(crate) trait Acts {
     /// What it changes with, while nothing but the motion goes on.
     fn dependence(&self) -> Dependence;
 
+    /// Calls `visit` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step, where q̇ follows q at
+    /// `rate` [1/s]: for one particle its block, for two the block of each and, with the sign turned, of the pair.
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+    );
+
     /// The particles this force names; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
@@ -51,6 +61,14 @@ pub(crate) enum Dependence {
     Drag(f64),
     /// The positions and velocities of the particles it names.
     Motion,
+}
+
+/// The stiffness of one force, in two parts, so that a method may leave out what is negative.
+pub(crate) struct Tangent<const D: usize> {
+    /// Positive semidefinite.
+    pub(crate) definite: Block<D>,
+    /// Semidefinite of either sign: geometric stiffness.
+    pub(crate) geometric: Block<D>,
 }
 
 macro_rules! forces {
@@ -78,6 +96,14 @@ macro_rules! forces {
             }
             fn dependence(&self) -> Dependence {
                 match self { $(Force::$kind(force) => force.dependence(),)* }
+            }
+            fn tangent<const D: usize>(
+                &self,
+                motion: Motion<'_, D>,
+                rate: f64,
+                visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+            ) {
+                match self { $(Force::$kind(force) => force.tangent(motion, rate, visit),)* }
             }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }

@@ -8,7 +8,8 @@
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence, Tangent, finite, not_negative};
+use crate::linalg::block::{diagonal, zero};
 use crate::point::{Motion, add, dot, first, minus, scaled};
 use crate::system::ParticleId;
 
@@ -48,6 +49,11 @@ impl Acts for MouseSpring {
 
     fn dependence(&self) -> Dependence {
         Dependence::Motion
+    }
+
+    fn tangent<const D: usize>(&self, _: Motion<'_, D>, rate: f64, visit: &mut impl FnMut(&[ParticleId], Tangent<D>)) {
+        let definite = diagonal(self.stiffness + rate * self.damping);
+        visit(&[self.particle], Tangent { definite, geometric: zero() });
     }
 
     fn particles(&self) -> Vec<ParticleId> {

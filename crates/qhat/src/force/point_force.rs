@@ -5,7 +5,7 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence, Tangent, finite};
 use crate::point::{Motion, add, dot, first};
 use crate::system::ParticleId;
 
@@ -36,6 +36,8 @@ impl Acts for PointForce {
     fn dependence(&self) -> Dependence {
         Dependence::Nothing
     }
+
+    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
 
     fn particles(&self) -> Vec<ParticleId> {
         vec![self.particle]

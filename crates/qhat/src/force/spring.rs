@@ -5,12 +5,14 @@
 //! F_a = −[ks (|L| − r) + kd L̇·n] n,   F_b = −F_a           [N]
 //! V   = ½ ks (|L| − r)²                                     [J]
 //! power of the damper = −kd (L̇·n)²                          [W]
+//! −∂F_a/∂x_a = ks nnᵀ + [ks (|L| − r) + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
 //! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.
 
-use super::{Acts, Dependence, not_negative};
+use super::{Acts, Dependence, Tangent, not_negative};
+use crate::linalg::block::{diagonal, outer, plus, zero};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
 use crate::system::ParticleId;
 
@@ -78,6 +80,26 @@ impl Acts for Spring {
 
     fn dependence(&self) -> Dependence {
         Dependence::Motion
+    }
+
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+    ) {
+        let Some(Stretch { length, rate: stretching, n }) = self.stretch(motion) else {
+            // A spring of no length is linear: the one case in which there is a stiffness without a direction.
+            if self.rest == 0.0 {
+                visit(&[self.a, self.b], Tangent { definite: diagonal(self.stiffness), geometric: zero() });
+            }
+            return;
+        };
+        // The damper also depends on q through n; that part is no symmetric matrix, and Newton's method does without it.
+        let across = (self.stiffness * (length - self.rest) + self.damping * stretching) / length;
+        let definite = outer(self.stiffness + rate * self.damping, n, n);
+        let geometric = plus(diagonal(across), -across, outer(1.0, n, n));
+        visit(&[self.a, self.b], Tangent { definite, geometric });
     }
 
     fn particles(&self) -> Vec<ParticleId> {

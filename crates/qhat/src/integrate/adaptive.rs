@@ -173,7 +173,7 @@ impl<'a> Frame<'a> {
             }
             None => (Vec::new(), false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient });
+        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None });
         self.report.energy = measure::energy(self.system, state);
         self.report
     }

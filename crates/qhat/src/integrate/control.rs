@@ -44,7 +44,7 @@ pub(super) fn longest_substep<const D: usize>(
             turning = turning.max(equation.rows.gamma[row].abs() / system.row_scale[row]);
         }
     }
-    for force in &system.forces {
+    for force in system.all_forces() {
         force.stiffness(motion, &mut |particle, stiffness, damper| {
             rowsum[particle.0] += stiffness;
             damping[particle.0] += damper;

@@ -3,11 +3,14 @@
 //! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
 
 mod adaptive;
+mod bdf2;
 mod control;
 mod dop853;
 mod dopri5;
+mod end_of_step;
 mod euler;
 mod field;
+mod implicit;
 mod pair;
 mod projection;
 mod rattle;
@@ -42,6 +45,7 @@ pub struct Workspace {
     /// Made when a method first goes in lanes.
     lanes: Option<Lanes>,
     rattle: rattle::Scratch,
+    end_of_step: Option<Box<end_of_step::Scratch>>,
 }
 
 impl Workspace {
@@ -57,6 +61,7 @@ impl Workspace {
             stages: runge_kutta::Stages::default(),
             lanes: None,
             rattle: rattle::Scratch::new(system),
+            end_of_step: None,
         }
     }
 
@@ -110,6 +115,10 @@ pub(crate) fn step_for(
         Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
         Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
         Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
+        Integrator::Implicit => {
+            end_of_step::frame::<D>(&implicit::IMPLICIT, system, state, settings, frame, workspace)
+        }
+        Integrator::Bdf2 => end_of_step::frame::<D>(&bdf2::BDF2, system, state, settings, frame, workspace),
     })
 }
 

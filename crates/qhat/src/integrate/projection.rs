@@ -62,7 +62,9 @@ fn positions<const D: usize>(
     qd: &[f64],
 ) -> Result<(f64, usize), StepError> {
     equation.constrain(system, Motion::<D> { q, qd });
-    let before = equation.rows.C.iter().fold(0.0, |most: f64, C| most.max(C.abs()));
+    let before = (0..equation.rows.C.len())
+        .filter(|&row| system.softness[row].is_rigid())
+        .fold(0.0, |most: f64, row| most.max(equation.rows.C[row].abs()));
     let mut delta = vec![0.0; equation.rows.C.len()];
     let mut start = q.to_vec();
     for iteration in 0..MAX_ITERATIONS {
@@ -124,10 +126,13 @@ pub(super) fn add_impulse<const D: usize>(J: &Jacobian, W: &[f64], mu: &[f64], f
     }
 }
 
-/// The row with the largest |C| over its scale, and that number; NaN counts as infinite.
+/// The rigid row with the largest |C| over its scale, and that number; NaN counts as infinite.
 pub(super) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
     let mut worst = (0, 0.0);
     for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
+        if !system.softness[row].is_rigid() {
+            continue;
+        }
         let relative = residual.abs() / scale;
         if relative.is_nan() {
             return (row, f64::INFINITY);

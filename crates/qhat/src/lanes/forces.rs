@@ -48,7 +48,7 @@ impl Forces {
         self.varying.clear();
         self.named.clear();
         self.Q.fill(0.0);
-        for (number, force) in system.forces.iter().enumerate() {
+        for (number, force) in system.all_forces().enumerate() {
             match force.dependence() {
                 Dependence::Nothing => {
                     force.add(Motion::<D> { q: &self.q, qd: &self.qd }, &system.mass, &mut self.Q);
@@ -95,8 +95,9 @@ impl Forces {
         let motion = Motion::<D> { q: &self.q, qd: &self.qd };
         let mut power = 0.0;
         for &number in &self.varying {
-            system.forces[number].add(motion, &system.mass, &mut self.Q);
-            power += system.forces[number].power(motion);
+            let force = system.force(number);
+            force.add(motion, &system.mass, &mut self.Q);
+            power += force.power(motion);
         }
         for &(particle, home) in &self.named {
             let Some(place) = home else { continue };

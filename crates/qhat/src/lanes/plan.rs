@@ -217,6 +217,10 @@ fn chains(system: &System, is_held: &[bool]) -> Option<Vec<Chain>> {
     let mut touching = vec![[usize::MAX; 2]; is_held.len()];
     for named in &system.constraints {
         let Constraint::Distance(rod) = &named.constraint else { continue };
+        if rod.compliance > 0.0 {
+            // What gives way is a spring.
+            continue;
+        }
         if rod.form != DistanceForm::Length || (is_held[rod.a.0] && is_held[rod.b.0]) {
             return None;
         }

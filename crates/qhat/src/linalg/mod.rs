@@ -3,6 +3,8 @@
 //! Every operation is a plain f64 operation in a fixed order, so native and wasm results agree bit for bit.
 
 mod bisection;
+pub(crate) mod block;
+mod block_ldl;
 mod dense;
 mod dissection;
 mod elimination;
@@ -10,6 +12,7 @@ mod fronts;
 mod hubs;
 mod incidence;
 mod kernel;
+mod leaf_to_root;
 mod multifrontal;
 mod ordering;
 mod plan;
@@ -19,8 +22,10 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use block_ldl::BlockLdl;
 pub(crate) use hubs::Hubs;
 pub(crate) use incidence::Incidence;
+pub(crate) use leaf_to_root::{LeafToRoot, Link, NONE, Saddle};
 pub(crate) use plan::Plan;
 pub use plan::{Component, Kind, Method};
 pub(crate) use rank::rank;

@@ -15,7 +15,7 @@
 //! [ Bᵀ                −I ] [a]
 //! ```
 
-use crate::constraint::{Jacobian, Layout};
+use crate::constraint::{Jacobian, Layout, Softness};
 use crate::linalg::{Component, DENSE_UP_TO, Hubs, Incidence, Pattern, Plan, Symbolic, SymmetricMatrix};
 use crate::point::{Point, dot, scaled};
 use crate::system::ParticleId;
@@ -33,7 +33,7 @@ pub(crate) struct MatrixStructure {
     meeting: Vec<Meeting>,
     blocks: Vec<u32>,
     slots: Vec<u32>,
-    /// Rows all of whose particles are fixed: their row of A is zero for good, no λ can act through them.
+    /// Rows all of whose particles are fixed, and rows that give way and are forces here: their row of A is zero for good.
     pub(crate) inert: Vec<bool>,
     pub(crate) symbolic: Arc<Symbolic>,
     pub(crate) components: Vec<Component>,
@@ -70,12 +70,17 @@ pub(crate) struct MatrixPlan {
 }
 
 impl MatrixPlan {
-    pub(crate) fn new(layout: &Layout, W: &[f64], dimension: usize) -> Self {
+    pub(crate) fn new(layout: &Layout, W: &[f64], softness: &[Softness], dimension: usize) -> Self {
         let m = layout.row_count();
         let entries = |row: usize| layout.start[row]..layout.start[row + 1];
         let moves = |e: &usize| W[layout.particle[*e].0] > 0.0;
-        let inert: Vec<bool> = (0..m).map(|row| !entries(row).any(|e| moves(&e))).collect();
-        let points = |row: usize| entries(row).filter(moves).map(|e| layout.particle[e].0 as u32);
+        let acts = |row: usize| softness[row].is_rigid() && entries(row).any(|e| moves(&e));
+        let inert: Vec<bool> = (0..m).map(|row| !acts(row)).collect();
+        let points = |row: usize| {
+            let is_inert = inert[row];
+            let acting = entries(row).filter(move |_| !is_inert).filter(moves);
+            acting.map(|e| layout.particle[e].0 as u32)
+        };
         let incidence = Incidence::new(W.len(), (0..m).map(points));
         let hubs = Hubs::new(&incidence, dimension);
         let plan = Plan::with_hubs(&incidence, &hubs);
@@ -201,7 +206,7 @@ impl MatrixStructure {
     /// J W Jᵀ with its rows in the order the user gave them and no unknowns for hubs: to look at.
     pub(crate) fn in_given_order<const D: usize>(&self, J: &Jacobian, W: &[f64]) -> SymmetricMatrix {
         let m = J.row_count();
-        let moving = |row: usize| J.row(row).filter(|(particle, _)| W[particle.0] > 0.0);
+        let moving = |row: usize| J.row(row).filter(move |(particle, _)| !self.inert[row] && W[particle.0] > 0.0);
         let incidence = Incidence::new(W.len(), (0..m).map(|row| moving(row).map(|(particle, _)| particle.0 as u32)));
         let pattern = Pattern::of_incidence(&incidence);
         let mut values = vec![0.0; pattern.len()];

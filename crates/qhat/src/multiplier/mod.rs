@@ -71,6 +71,10 @@ impl Equation {
         self.solver.solve(&system.matrix, &self.b.sum, wanted, &mut self.lambda);
         let s = 1.0 - feedback.elasticity;
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
+        // What gives way has acted in Q already; its λ is told all the same.
+        for (row, soft) in system.softness.iter().enumerate().filter(|(_, soft)| !soft.is_rigid()) {
+            self.lambda[row] = -(self.rows.C[row] / soft.compliance + soft.damping * self.rows.Cd[row]);
+        }
         reaction::accelerations::<D>(&system.inverse_mass, &self.Q, &self.Q_hat, &mut self.qdd);
     }
 

@@ -83,7 +83,7 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
         let length = random.within(0.5, 2.0);
         let form = if random.below(2) == 0 { DistanceForm::Length } else { DistanceForm::Squared };
         let (a, b) = if random.below(2) == 0 { (i, j) } else { (j, i) };
-        builder.constraint(format!("rod{i}"), Distance { a: ParticleId(a), b: ParticleId(b), length, form });
+        builder.constraint(format!("rod{i}"), Distance { form, ..Distance::new(ParticleId(a), ParticleId(b), length) });
     }
     let held = ParticleId(particles - 1);
     let form = if random.below(2) == 0 { NailForm::Vector } else { NailForm::Scalar };

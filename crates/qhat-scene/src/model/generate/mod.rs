@@ -44,6 +44,14 @@ pub(crate) struct RodLink {
     /// The function that is held at zero: the length's error, or that of its square (the classic one).
     #[serde(default)]
     pub(crate) form: DistanceForm,
+    /// How far each gives way [m/N], 0 (rigid) or more: under a tension T it is longer by this times T.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub(crate) compliance: f64,
+    /// A damper beside the compliance [N·s/m], 0 or more; a rigid rod has no motion to damp.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub(crate) damping: f64,
 }
 
 /// Springs that do not pull at the start.
