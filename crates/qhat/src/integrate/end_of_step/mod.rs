@@ -69,7 +69,7 @@ pub(super) fn frame<const D: usize>(
 ) -> Result<StepReport, StepError> {
     let mut scratch = workspace.end_of_step.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
     let before = workspace.equation.solver.factorizations;
-    if state.carry.is_none() {
+    if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
         let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
