@@ -61,7 +61,7 @@ pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
-pub use report::{Projection, StepReport, Warning};
+pub use report::{Projection, Solver, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

@@ -1,6 +1,7 @@
 //! What a step tells.
 
 use crate::measure::Energy;
+use crate::settings::Integrator;
 use std::fmt;
 
 /// One frame or step in numbers. Maxima are over its substeps.
@@ -24,6 +25,10 @@ pub struct StepReport {
     pub max_relative_length_error: f64,
     /// Energies at the end.
     pub energy: Energy,
+    /// Who carried the state; with auto, whom it chose.
+    pub integrator: Integrator,
+    /// By which path the constraints were solved.
+    pub solver: Solver,
     /// What a user should know.
     pub warnings: Vec<Warning>,
 }
@@ -41,6 +46,7 @@ impl StepReport {
         self.max_residual_rate = self.max_residual_rate.max(next.max_residual_rate);
         self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
         self.energy = next.energy;
+        (self.integrator, self.solver) = (next.integrator, next.solver);
         for warning in next.warnings {
             self.warn(warning);
         }
@@ -63,6 +69,28 @@ impl StepReport {
     }
 }
 
+/// A path to the multipliers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Solver {
+    /// Rows of A = J W Jᵀ, each component by its own method: see [`crate::System::components`].
+    #[default]
+    Rows,
+    /// Open chains in eight lanes.
+    Lanes,
+    /// Newton's method at the end of the step, with geometric stiffness.
+    EndOfStep,
+}
+
+impl fmt::Display for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Solver::Rows => "rows",
+            Solver::Lanes => "lanes",
+            Solver::EndOfStep => "end of step",
+        })
+    }
+}
+
 /// A condition that did not stop the step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -72,6 +100,11 @@ pub enum Warning {
     NoGradient {
         /// Their names.
         rows: Vec<String>,
+    },
+    /// Auto went over to bdf2: accurate substeps would have taken more work than a frame is allowed.
+    TooStiff {
+        /// How many it is allowed.
+        substeps: usize,
     },
     /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
     BudgetSpent {
@@ -96,6 +129,10 @@ impl fmt::Display for Warning {
                 f,
                 "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it (diagonal drag hides this)",
                 rows.join(", ")
+            ),
+            Warning::TooStiff { substeps } => write!(
+                f,
+                "the motion is too stiff to be followed accurately in {substeps} substeps a frame, so bdf2 carries it: rods hold, fast oscillations are damped (raise frame_work to wait longer)"
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,

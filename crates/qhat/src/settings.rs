@@ -13,8 +13,10 @@ pub enum Integrator {
     SymplecticEuler,
     /// The classical Runge–Kutta method, order 4. Drifts slowly off the constraints.
     Rk4,
-    /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
+    /// [`Integrator::Dop853`] where a frame can be followed with the work allowed, [`Integrator::Bdf2`] where it cannot.
     #[default]
+    Auto,
+    /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
     Rattle,
     /// Runge–Kutta of order 5 on the equation, projected after each step; substeps of its own choosing.
     Dopri5,
@@ -28,10 +30,11 @@ pub enum Integrator {
 
 impl Integrator {
     /// All of them.
-    pub const ALL: [Integrator; 8] = [
+    pub const ALL: [Integrator; 9] = [
         Integrator::Euler,
         Integrator::SymplecticEuler,
         Integrator::Rk4,
+        Integrator::Auto,
         Integrator::Rattle,
         Integrator::Dopri5,
         Integrator::Dop853,
@@ -45,6 +48,7 @@ impl Integrator {
             Integrator::Euler => "euler",
             Integrator::SymplecticEuler => "symplectic-euler",
             Integrator::Rk4 => "rk4",
+            Integrator::Auto => "auto",
             Integrator::Rattle => "rattle",
             Integrator::Dopri5 => "dopri5",
             Integrator::Dop853 => "dop853",
@@ -55,7 +59,7 @@ impl Integrator {
 
     /// Whether it chooses its own substeps within a frame of h (otherwise it takes steps of exactly h).
     pub fn is_adaptive(self) -> bool {
-        matches!(self, Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
+        matches!(self, Integrator::Auto | Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
     /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in need).
@@ -68,14 +72,14 @@ impl Integrator {
         self.is_adaptive() || self.is_implicit()
     }
 
-    /// Global order of convergence in h.
+    /// Global order of convergence in h; of auto that of its accurate half.
     pub fn order(self) -> u32 {
         match self {
             Integrator::Euler | Integrator::SymplecticEuler | Integrator::Implicit => 1,
             Integrator::Rattle | Integrator::Bdf2 => 2,
             Integrator::Rk4 => 4,
             Integrator::Dopri5 => 5,
-            Integrator::Dop853 => 8,
+            Integrator::Dop853 | Integrator::Auto => 8,
         }
     }
 }
@@ -130,7 +134,7 @@ impl Feedback {
 pub struct Settings {
     /// h [s], > 0, default 0.01: the step of a fixed-step integrator, the frame of an adaptive one.
     pub h: f64,
-    /// Default [`Integrator::Rattle`].
+    /// Default [`Integrator::Auto`].
     pub integrator: Integrator,
     /// Of adaptive integrators: relative error a substep, in (0, 1), default 1e-4.
     pub tolerance: f64,
@@ -141,6 +145,10 @@ pub struct Settings {
     /// Of implicit and bdf2: Newton iterations a frame, ≥ 1, default 10 000. A count and not a time, so that the same input
     /// gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far that is.
     pub frame_budget: usize,
+    /// Of auto: row solves a frame before it goes over to bdf2, ≥ 1, default 20 million. A row takes some 5 ns in a chain, and
+    /// counts sixteenfold in anything else: at the default a frame waits for a tenth of a second to a few. A page that is to be
+    /// in time takes a million.
+    pub frame_work: usize,
 }
 
 impl Default for Settings {
@@ -152,6 +160,7 @@ impl Default for Settings {
             constraint_tolerance: 1e-10,
             max_substeps: 200_000,
             frame_budget: 10_000,
+            frame_work: 20_000_000,
         }
     }
 }
@@ -169,7 +178,9 @@ impl Settings {
         let substeps = self.max_substeps;
         in_range("max_substeps", substeps as f64, substeps >= 1, "at least 1")?;
         let budget = self.frame_budget;
-        in_range("frame_budget", budget as f64, budget >= 1, "at least 1")
+        in_range("frame_budget", budget as f64, budget >= 1, "at least 1")?;
+        let work = self.frame_work;
+        in_range("frame_work", work as f64, work >= 1, "at least 1")
     }
 }
 

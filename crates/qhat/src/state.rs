@@ -39,6 +39,8 @@ pub(crate) struct Carry {
     pub(crate) deficient: bool,
     /// Where the last step began, for a method that looks back.
     pub(crate) previous: Option<Previous>,
+    /// Frames for which auto stays with a method that solves at the end of the step.
+    pub(crate) resting: u32,
 }
 
 /// The state before the last step of a method that solves at the end of the step.

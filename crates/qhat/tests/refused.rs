@@ -222,7 +222,7 @@ fn a_diverging_run_stops_at_the_last_good_state() {
 #[test]
 fn more_substeps_than_allowed() {
     let (system, state) = systems::double_pendulum();
-    let settings = Settings { h: 1.0, max_substeps: 7, ..Settings::default() };
+    let settings = Settings { integrator: Integrator::Rattle, h: 1.0, max_substeps: 7, ..Settings::default() };
     let mut simulation = Simulation::new(system, state, settings).unwrap();
     let error = simulation.step().unwrap_err();
     let time = simulation.state().time();

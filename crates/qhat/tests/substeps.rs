@@ -3,11 +3,11 @@
 
 mod systems;
 
-use qhat::{Dimension, Distance, Drag, Particle, Settings, StepReport, System, Workspace, step};
+use qhat::{Dimension, Distance, Drag, Integrator, Particle, Settings, StepReport, System, Workspace, step};
 
 /// Frames of h under a tolerance that allows everything, so that nothing but the bounds under test limits the substep.
 fn frames(system: &System, start: &qhat::State, h: f64, count: usize) -> Vec<StepReport> {
-    let settings = Settings { h, tolerance: 0.999, ..Settings::default() };
+    let settings = Settings { integrator: Integrator::Rattle, h, tolerance: 0.999, ..Settings::default() };
     let (mut state, mut workspace) = (start.clone(), Workspace::new(system));
     (0..count).map(|_| step(system, &mut state, &settings, &mut workspace).unwrap()).collect()
 }
@@ -74,7 +74,7 @@ fn substeps_resolve_the_damping() {
 #[test]
 fn substeps_of_a_frame_are_alike() {
     let (system, state) = systems::double_pendulum();
-    let settings = Settings { h: 0.05, tolerance: 1e-6, ..Settings::default() };
+    let settings = Settings { integrator: Integrator::Rattle, h: 0.05, tolerance: 1e-6, ..Settings::default() };
     let (mut state, mut workspace) = (state, Workspace::new(&system));
     let mut worst = f64::INFINITY;
     for _ in 0..100 {
@@ -95,7 +95,7 @@ fn multipliers_of_the_last_substep_start_the_next() {
         ("heavy chain", systems::chain(40, 100.0), 1.3),
         ("net", systems::net(5), 1.6),
     ] {
-        let settings = Settings { h: 1.0 / 60.0, constraint_tolerance: 1e-8, ..Settings::default() };
+        let settings = Settings { constraint_tolerance: 1e-8, ..systems::settings(Integrator::Rattle, 1.0 / 60.0) };
         let (mut state, mut workspace) = (state, Workspace::new(&system));
         let (mut iterations, mut substeps) = (0, 0);
         for _ in 0..30 {

@@ -6,7 +6,7 @@ use qhat::{Feedback, Gravity, Integrator, ParticleId, Settings, Simulation, Stat
 use systems::dense::assert_close;
 
 fn tight(tolerance: f64) -> Settings {
-    Settings { h: 1.0 / 60.0, tolerance, constraint_tolerance: 1e-13, ..Settings::default() }
+    Settings { tolerance, constraint_tolerance: 1e-13, ..systems::settings(Integrator::Rattle, 1.0 / 60.0) }
 }
 
 fn run(simulation: &mut Simulation, seconds: f64) {

@@ -58,6 +58,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         tolerance: step.tolerance,
         constraint_tolerance: step.constraint_tolerance,
         frame_budget: step.frame_budget as usize,
+        frame_work: step.frame_work as usize,
         ..Settings::default()
     };
     if let Err(error) = settings.check() {

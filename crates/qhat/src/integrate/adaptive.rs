@@ -53,6 +53,17 @@ pub(super) enum Outcome {
     Singular,
 }
 
+/// How far a frame has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// To its end.
+    Whole,
+    /// To where rows depend on each other.
+    Singular,
+    /// To where it had used its substeps, or showed that they would not do.
+    OutOfWork,
+}
+
 /// What one substep that met the constraints says.
 pub(super) struct Attempt {
     /// Error estimate over the tolerance's own unit: relative to the extent of the system.
@@ -70,32 +81,44 @@ pub(super) struct Frame<'a> {
     start: f64,
     length: f64,
     done: f64,
+    /// Substeps that may be tried, those taken back included.
+    limit: usize,
+    tried: usize,
     /// The substep to try next [s].
     pub(super) proposed: f64,
     pub(super) report: StepReport,
 }
 
 impl<'a> Frame<'a> {
-    /// A frame of a length [s] that begins at a state.
+    /// A frame of a length [s] that begins at a state, with as many substeps as it takes.
     pub(super) fn new(system: &'a System, settings: &'a Settings, state: &State, length: f64) -> Self {
         let report = StepReport { smallest_substep: length, ..StepReport::default() };
         let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
-        Frame { system, settings, start: state.t, length, done: 0.0, proposed, report }
+        let (done, tried, limit) = (0.0, 0, usize::MAX);
+        Frame { system, settings, start: state.t, length, done, limit, tried, proposed, report }
     }
 
-    /// Goes on to the end of the frame, or as far as the method can: whether it is the end. The state is up to date in any
-    /// case, t included.
-    pub(super) fn run(&mut self, method: &mut impl Method, state: &mut State) -> Result<bool, StepError> {
+    /// The same with no more than so many substeps, or as many as show that they will not do.
+    pub(super) fn within(self, limit: usize) -> Self {
+        Frame { limit, ..self }
+    }
+
+    /// Goes on to the end of the frame, or as far as the method can. The state is up to date in any case, t included.
+    pub(super) fn run(&mut self, method: &mut impl Method, state: &mut State) -> Result<End, StepError> {
         let outcome = self.substeps(method, state);
         method.end(state);
         outcome
     }
 
-    fn substeps(&mut self, method: &mut impl Method, state: &mut State) -> Result<bool, StepError> {
+    fn substeps(&mut self, method: &mut impl Method, state: &mut State) -> Result<End, StepError> {
         while self.done < self.length {
+            if self.is_hopeless() {
+                return Ok(End::OutOfWork);
+            }
+            self.tried += 1;
             let h = fit(self.proposed.min(method.longest(state)), self.length - self.done);
             let attempt = match method.attempt(state, h) {
-                Outcome::Singular => return Ok(false),
+                Outcome::Singular => return Ok(End::Singular),
                 Outcome::NotMet => None,
                 Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
                 Outcome::Met(attempt) => Some(attempt),
@@ -128,7 +151,13 @@ impl<'a> Frame<'a> {
                 return Err(StepError::TooManySubsteps { time: state.t, max_substeps });
             }
         }
-        Ok(true)
+        Ok(End::Whole)
+    }
+
+    /// Whether the substeps are used up, or an eighth of them has come less than a quarter as far as it should.
+    fn is_hopeless(&self) -> bool {
+        let part = self.tried as f64 / self.limit as f64;
+        self.tried >= self.limit || (self.tried >= 16 && part > 0.125 && 4.0 * self.done < part * self.length)
     }
 
     /// Which particle of what was tried is lost: an error that is not a number is not for a shorter substep to mend.
@@ -173,7 +202,7 @@ impl<'a> Frame<'a> {
             }
             None => (Vec::new(), false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None });
+        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, resting: 0 });
         self.report.energy = measure::energy(self.system, state);
         self.report
     }

@@ -3,6 +3,7 @@
 //! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
 
 mod adaptive;
+mod auto;
 mod bdf2;
 mod control;
 mod dop853;
@@ -108,10 +109,11 @@ pub(crate) fn step_for(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     settings.check()?;
-    in_dimension!(system.dimension, D => match settings.integrator {
+    let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
         Integrator::Euler => fixed::<D>(system, state, frame, workspace, euler::step::<D>),
         Integrator::SymplecticEuler => fixed::<D>(system, state, frame, workspace, symplectic_euler::step::<D>),
         Integrator::Rk4 => fixed::<D>(system, state, frame, workspace, rk4::step::<D>),
+        Integrator::Auto => auto::frame::<D>(system, state, settings, frame, workspace),
         Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
         Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
         Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
@@ -119,7 +121,10 @@ pub(crate) fn step_for(
             end_of_step::frame::<D>(&implicit::IMPLICIT, system, state, settings, frame, workspace)
         }
         Integrator::Bdf2 => end_of_step::frame::<D>(&bdf2::BDF2, system, state, settings, frame, workspace),
-    })
+    })?;
+    // Only auto has a choice, and says itself what it was.
+    let integrator = if settings.integrator == Integrator::Auto { report.integrator } else { settings.integrator };
+    Ok(StepReport { integrator, ..report })
 }
 
 /// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already.

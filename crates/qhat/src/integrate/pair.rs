@@ -1,13 +1,13 @@
 //! Embedded Runge–Kutta pairs: substeps by the estimated error, projected after each.
 
 use super::Workspace;
-use super::adaptive::{self, Attempt, Frame, MISSED, Method, Outcome};
+use super::adaptive::{self, Attempt, End, Frame, MISSED, Method, Outcome};
 use super::field::{Chains, Field, Rows};
 use super::runge_kutta::{Combination, Squares, Stages, Tableau, advance};
 use crate::error::StepError;
 use crate::lanes::{Lanes, Largest, Projected, vector_unit};
 use crate::measure::Drift;
-use crate::report::StepReport;
+use crate::report::{Solver, StepReport};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
 use crate::system::System;
@@ -31,6 +31,11 @@ pub(super) struct Pair {
 }
 
 impl Pair {
+    /// Solves of the equation in one substep.
+    pub(super) fn stages(&self) -> usize {
+        self.tableau.stages
+    }
+
     pub(super) const fn new(order: u32, tableau: Tableau, estimate: &[f64], coarse: Option<&[f64]>) -> Self {
         let coarse = match coarse {
             Some(weights) => Some(tableau.combination(weights)),
@@ -50,8 +55,7 @@ struct Run<'a, F> {
     stages: &'a mut Stages,
 }
 
-/// Carries the state over one frame: open chains in lanes, anything else, and what becomes singular on the way, in the
-/// user's order.
+/// Carries the state over one frame.
 pub(super) fn frame<const D: usize>(
     pair: &Pair,
     system: &System,
@@ -60,7 +64,21 @@ pub(super) fn frame<const D: usize>(
     length: f64,
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
-    let mut frame = Frame::new(system, settings, state, length);
+    carry_on::<D>(pair, system, state, settings, length, usize::MAX, workspace).map(|(report, _)| report)
+}
+
+/// Carries the state over one frame, or as far as so many substeps go: open chains in lanes, anything else, and what becomes
+/// singular on the way, in the user's order. Says whether it is the whole.
+pub(super) fn carry_on<const D: usize>(
+    pair: &Pair,
+    system: &System,
+    state: &mut State,
+    settings: &Settings,
+    length: f64,
+    limit: usize,
+    workspace: &mut Workspace,
+) -> Result<(StepReport, bool), StepError> {
+    let mut frame = Frame::new(system, settings, state, length).within(limit);
     let mut carry = state.carry.take();
     if let Some(plan) = &system.plan
         && !carry.as_ref().is_some_and(|carry| carry.deficient)
@@ -68,25 +86,27 @@ pub(super) fn frame<const D: usize>(
         let mut stages = std::mem::take(&mut workspace.stages);
         let lanes = workspace.lanes.get_or_insert_with(|| Lanes::new(system, plan));
         let field = Chains::<D> { system, plan, lanes };
-        let is_whole = run(pair, field, &mut stages, &mut frame, state);
+        let end = run(pair, field, &mut stages, &mut frame, state);
         workspace.stages = stages;
-        if is_whole? {
-            return Ok(frame.finish(state, None));
+        frame.report.solver = Solver::Lanes;
+        match end? {
+            End::Singular => carry = None,
+            end => return Ok((frame.finish(state, None), end == End::Whole)),
         }
-        carry = None;
     }
     let factorizations = workspace.equation.solver.factorizations;
     adaptive::begin::<D>(system, state, carry, workspace);
     workspace.factored_at.clear();
     let mut stages = std::mem::take(&mut workspace.stages);
     let field = Rows::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
-    let outcome = run(pair, field, &mut stages, &mut frame, state);
+    let end = run(pair, field, &mut stages, &mut frame, state);
     workspace.stages = stages;
-    outcome?;
+    let end = end?;
+    frame.report.solver = Solver::Rows;
     workspace.factored_at.clone_from(&state.q);
     frame.report.factorizations += workspace.equation.solver.factorizations - factorizations;
     let lambda = workspace.equation.lambda.clone();
-    Ok(frame.finish(state, Some((lambda, &workspace.equation))))
+    Ok((frame.finish(state, Some((lambda, &workspace.equation))), end == End::Whole))
 }
 
 fn run<F: Field>(
@@ -95,7 +115,7 @@ fn run<F: Field>(
     stages: &mut Stages,
     frame: &mut Frame<'_>,
     state: &mut State,
-) -> Result<bool, StepError> {
+) -> Result<End, StepError> {
     stages.resize(field.blocks());
     field.begin(state, &mut stages.q, &mut stages.qd);
     let (system, settings) = (frame.system, frame.settings);

@@ -38,7 +38,7 @@ pub(super) struct Combination {
 /// A method: where each stage lies, and where the step ends.
 #[derive(Debug)]
 pub(super) struct Tableau {
-    stages: usize,
+    pub(super) stages: usize,
     a: [[f64; STAGES]; STAGES],
     at: [Combination; STAGES],
     end: Combination,

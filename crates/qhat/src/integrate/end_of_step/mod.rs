@@ -19,7 +19,7 @@ use super::{Workspace, check_finite};
 use crate::error::StepError;
 use crate::measure;
 use crate::point::Motion;
-use crate::report::{StepReport, Warning};
+use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Settings};
 use crate::state::{Carry, Previous, State};
 use crate::system::System;
@@ -73,7 +73,7 @@ pub(super) fn frame<const D: usize>(
         // λ of the equation is the best first guess.
         let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
-        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None });
+        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None, resting: 0 });
     }
     workspace.factored_at.clear();
     scratch.newton.matrix.factorizations = workspace.equation.solver.factorizations - before;
@@ -91,7 +91,7 @@ fn substeps<const D: usize>(
     workspace: &mut Workspace,
     scratch: &mut Scratch,
 ) -> Result<StepReport, StepError> {
-    let mut report = StepReport { smallest_substep: frame, ..StepReport::default() };
+    let mut report = StepReport { smallest_substep: frame, solver: Solver::EndOfStep, ..StepReport::default() };
     let start = state.t;
     // In parts of the frame, which add up without rounding.
     let (mut done, mut parts) = (0, PARTS);
