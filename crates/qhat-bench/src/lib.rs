@@ -15,7 +15,7 @@ mod table;
 mod workload;
 
 pub use errors::Errors;
-pub use run::{Outcome, best, run};
+pub use run::{Outcome, best, quickest, run};
 pub use setting::{SETTINGS, Setting, UnknownSetting, settings};
 pub use table::Row;
 pub use workload::{NAMES, UnknownWorkload, Workload};

@@ -1,7 +1,7 @@
 //! The parts of `make bench` that are qhat's own; docs/benchmarks.md says what is measured and how to read it.
 
 use qhat_bench::trajectory::{Writer, measure};
-use qhat_bench::{NAMES, Row, Setting, Workload, best, kernels, run, scenes, settings};
+use qhat_bench::{NAMES, Row, Setting, Workload, best, kernels, quickest, run, scenes, settings};
 use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
@@ -80,7 +80,7 @@ fn trajectory(workload: &Workload, setting: &Setting, limit: Duration, file: &Pa
     })?;
     failed?;
     written.finish()?;
-    let quickest = if outcome.ended.is_none() { best(workload, setting, limit)?.cpu } else { outcome.cpu };
-    println!("{} {}", quickest.as_secs_f64(), outcome.ended.unwrap_or_default());
+    let quickest = quickest(outcome, || run(workload, setting, limit, |_, _| ()))?;
+    println!("{} {}", quickest.cpu.as_secs_f64(), quickest.ended.unwrap_or_default());
     Ok(())
 }
