@@ -75,7 +75,13 @@ def engines() -> list[Engine]:
             substeps(1, 8, 32, 128, 256, 512, then="iterations=4 joint=hinge"),
             chains,
         ),
-        Engine("Rapier tree", rapier, [str(BUILT / "rapier-peer")], substeps(1, 4, 8, then="iterations=4 joint=tree"), chains),
+        Engine(
+            "Rapier tree",
+            rapier,
+            [str(BUILT / "rapier-peer")],
+            substeps(1, then="iterations=1 joint=tree") + substeps(1, 4, 8, then="iterations=4 joint=tree"),
+            chains,
+        ),
         Engine(
             "Rapier springs",
             rapier,
@@ -93,7 +99,7 @@ def engines() -> list[Engine]:
             "MuJoCo tree",
             version("mujoco"),
             python("mujoco_tree"),
-            substeps(8, then="integrator=Euler") + substeps(8, 32, 64, 128, then="integrator=RK4"),
+            substeps(8, 64, then="integrator=Euler") + substeps(8, 16, 32, 64, 128, then="integrator=RK4"),
             chains,
         ),
         Engine(

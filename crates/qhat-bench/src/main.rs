@@ -4,6 +4,7 @@ use qhat_bench::trajectory::{Writer, measure};
 use qhat_bench::{NAMES, Row, Setting, Workload, best, kernels, quickest, run, scenes, settings};
 use std::error::Error;
 use std::path::Path;
+use std::process::ExitCode;
 use std::time::Duration;
 use std::{env, fs};
 
@@ -16,12 +17,22 @@ const USAGE: &str = "Usage:
   qhat-bench trajectory WORKLOAD SETTING SECONDS FILE
                                                   a run of qhat as another engine would leave it; at most SECONDS of CPU
   qhat-bench measure WORKLOAD FILE                the errors of a trajectory, whoever made it
-The first three write only when nothing is named.";
+Named scenes or workloads are printed only.";
 
 /// What one run of `workloads` may cost; a setting that needs more is stopped, and its row says how far it got.
-const LIMIT: Duration = Duration::from_secs(15);
+const LIMIT: Duration = Duration::from_secs(10);
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match command() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn command() -> Result<(), Box<dyn Error>> {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/results");
     fs::create_dir_all(&results)?;
     let arguments: Vec<String> = env::args().skip(1).collect();

@@ -55,9 +55,9 @@ impl Workload {
         }
     }
 
-    /// A large workload is looked at for sixteen short frames only.
+    /// A large workload is looked at for four short frames only.
     fn timed(self) -> Self {
-        if self.is_large() { Workload { frame: 1.0 / 960.0, frames: 16, ..self } } else { self }
+        if self.is_large() { Workload { frame: 1.0 / 960.0, frames: 4, ..self } } else { self }
     }
 }
 

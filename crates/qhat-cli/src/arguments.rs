@@ -130,6 +130,6 @@ pub(crate) struct Bench {
     pub(crate) csv: Option<PathBuf>,
 
     /// CPU time after which a run is stopped at the end of its frame [s]
-    #[arg(long, value_name = "SECONDS", default_value_t = 15.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub(crate) limit: f64,
 }
