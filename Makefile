@@ -69,9 +69,15 @@ docs: ## the Rust documentation, in target/doc
 	@echo "Building the documentation"
 	@RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
-bench: ## time, residual and energy error of every shipped scene, into benches/results
+bench: ## cost beside length and energy error, here and in other engines, into benches/results (about half an hour)
+	@cargo build --release --quiet --package qhat-bench
 	@echo "Running every shipped scene three times"
-	@cargo run --release --quiet --package qhat-bench
+	@target/release/qhat-bench scenes
+	@echo "Running every workload"
+	@target/release/qhat-bench workloads
+	@benches/peers/run
+	@echo "Counting the instructions of six kernels"
+	@target/release/qhat-bench kernels
 
 clean: ## remove everything that was built (npm packages and cached tools stay)
 	@cargo clean --quiet

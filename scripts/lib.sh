@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# What scripts/setup and scripts/build-wasm both need to know: where downloaded tools are kept, which Rust can
-# compile for the browser, and which wasm-bindgen belongs to this checkout.
+# What scripts/setup, scripts/build-wasm and benches/peers/run need to know: where downloaded tools are kept, how to
+# install Debian's packages, which Rust can compile for the browser, and which wasm-bindgen belongs to this checkout.
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/qhat
 wasm_target=wasm32-unknown-unknown
@@ -9,6 +9,27 @@ say() { printf '%s: %s\n' "${0##*/}" "$*"; }
 die() {
     printf '%s: %s\n' "${0##*/}" "$*" >&2
     exit 1
+}
+
+# Debian's packages; the only step that needs root.
+install_debian() {
+    command -v apt-get >/dev/null || die "please install: $* (this machine has no apt-get to do it with)"
+    local -a root=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || die "please install as root: apt-get install --no-install-recommends $*"
+        say "this needs root, so sudo may ask for your password: apt-get install $*"
+        root=(sudo)
+    fi
+    local log
+    log=$(mktemp)
+    # The lists may be old or absent; a broken third-party source must not stop us from using the others.
+    "${root[@]}" apt-get -q update >"$log" 2>&1 || say "apt-get update reported a problem; trying to install all the same"
+    if ! "${root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get -qy -o DPkg::Lock::Timeout=300 install --no-install-recommends "$@" >>"$log" 2>&1; then
+        tail -n 20 "$log" >&2
+        die "apt-get could not install: $*"
+    fi
+    rm -f "$log"
 }
 
 # The Rust that compiles for the browser: `own` (the one on PATH has the target), `debian` (the second Rust of

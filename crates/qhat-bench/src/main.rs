@@ -1,88 +1,97 @@
-//! Runs every shipped scene and writes what it cost beside what it got wrong: speed without its error is no result.
-//!
-//! ```text
-//! cargo run --release -p qhat-bench [SCENE …]      writes benches/results/scenes.csv
-//! ```
+//! The parts of `make bench` that are qhat's own; docs/benchmarks.md says what is measured and how to read it.
 
-use cpu_time::ThreadTime;
-use qhat::StepError;
-use qhat_scene::{Scene, shipped};
+use qhat_bench::trajectory::{Writer, measure};
+use qhat_bench::{NAMES, Row, Setting, Workload, best, kernels, quickest, run, scenes, settings};
 use std::error::Error;
-use std::fmt::Write as _;
 use std::path::Path;
+use std::process::ExitCode;
 use std::time::Duration;
 use std::{env, fs};
 
-/// Simulated time of one case [s]: long enough for chains to whip, short enough to run all scenes in a minute.
-const SIMULATED: f64 = 2.0;
+const USAGE: &str = "Usage:
+  qhat-bench scenes [SCENE …]                     every shipped scene, into benches/results/scenes.csv
+  qhat-bench workloads [WORKLOAD …]               every workload, into benches/results/workloads.csv
+  qhat-bench kernels [--keep]                     instructions beside those kept; --keep writes them anew
+  qhat-bench settings WORKLOAD                    the settings it is measured at, one a line
+  qhat-bench neutral WORKLOAD FILE                the file that every other engine reads
+  qhat-bench trajectory WORKLOAD SETTING SECONDS FILE
+                                                  a run of qhat as another engine would leave it; at most SECONDS of CPU
+  qhat-bench measure WORKLOAD FILE                the errors of a trajectory, whoever made it
+Named scenes or workloads are printed only.";
 
-/// Runs of a case; the fastest counts, because what else the machine does only ever adds time.
-const RUNS: usize = 3;
+/// What one run of `workloads` may cost; a setting that needs more is stopped, and its row says how far it got.
+const LIMIT: Duration = Duration::from_secs(10);
 
-struct Outcome {
-    cpu: Duration,
-    substeps: usize,
-    length_error: f64,
-    energy_error: f64,
-    energy_error_max: f64,
+fn main() -> ExitCode {
+    match command() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let wanted: Vec<String> = env::args().skip(1).collect();
-    let mut csv = String::from(
-        "scene,integrator,rows,simulated_s,cpu_ms_per_simulated_s,us_per_substep,substeps,max_relative_length_error,energy_error,energy_error_max\n",
-    );
-    println!(
-        "{:<18} {:>17} {:>6} {:>12} {:>12} {:>9} {:>13} {:>13}",
-        "scene", "integrator", "rows", "CPU ms/sim s", "µs/substep", "substeps", "length error", "energy error"
-    );
-    for scene in shipped().iter().filter(|scene| wanted.is_empty() || wanted.iter().any(|name| name == scene.name)) {
-        let name = scene.name;
-        let scene = scene.load()?;
-        let mut best = run(&scene)?;
-        for _ in 1..RUNS {
-            let again = run(&scene)?;
-            best.cpu = best.cpu.min(again.cpu);
-        }
-        let cost = best.cpu.as_secs_f64() * 1e3 / SIMULATED;
-        let substep = best.cpu.as_secs_f64() * 1e6 / best.substeps as f64;
-        let (rows, integrator) = (scene.system.row_count(), scene.settings.integrator.name());
-        println!(
-            "{name:<18} {integrator:>17} {rows:>6} {cost:>12.3} {substep:>12.2} {:>9} {:>13.1e} {:>13.1e}",
-            best.substeps, best.length_error, best.energy_error
-        );
-        writeln!(
-            csv,
-            "{name},{integrator},{rows},{SIMULATED},{cost:.4},{substep:.3},{},{:e},{:e},{:e}",
-            best.substeps, best.length_error, best.energy_error, best.energy_error_max
-        )?;
-    }
+fn command() -> Result<(), Box<dyn Error>> {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/results");
     fs::create_dir_all(&results)?;
-    let file = results.join("scenes.csv");
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        ["scenes", ..] => scenes::scenes(&arguments[1..], &results),
+        ["workloads", ..] => workloads(&words[1..], &results.join("workloads.csv")),
+        ["kernels"] => kernels::compare(&results.join("instructions.csv"), false),
+        ["kernels", "--keep"] => kernels::compare(&results.join("instructions.csv"), true),
+        ["kernel", name] if kernels::run_one(name) => Ok(()),
+        ["settings", workload] => {
+            settings(&workload.parse()?).iter().for_each(|setting| println!("{setting}"));
+            Ok(())
+        }
+        ["neutral", workload, file] => Ok(fs::write(file, workload.parse::<Workload>()?.json())?),
+        ["trajectory", workload, setting, seconds, file] => {
+            let limit = Duration::try_from_secs_f64(seconds.parse()?)?;
+            trajectory(&workload.parse()?, &setting.parse()?, limit, Path::new(file))
+        }
+        ["measure", workload, file] => {
+            let (frames, errors) = measure(&workload.parse()?, Path::new(file))?;
+            let (worst, rms) = (errors.worst_length, errors.rms_length());
+            println!("{frames} {worst:e} {rms:e} {:e} {:e}", errors.energy(), errors.energy_max());
+            Ok(())
+        }
+        _ => Err(USAGE.into()),
+    }
+}
+
+fn workloads(wanted: &[&str], file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut csv = format!("{}\n", Row::CSV);
+    println!("{}", Row::heading());
+    for name in if wanted.is_empty() { &NAMES } else { wanted } {
+        let workload: Workload = name.parse()?;
+        for setting in settings(&workload) {
+            let row = Row::new(&workload, setting, best(&workload, &setting, LIMIT)?);
+            println!("{row}");
+            csv += &row.csv();
+            csv += "\n";
+        }
+    }
     if wanted.is_empty() {
-        fs::write(&file, csv)?;
-        println!("written to benches/results/scenes.csv");
+        fs::write(file, csv)?;
     }
     Ok(())
 }
 
-/// One run of a scene; the time is that of the stepping alone.
-fn run(scene: &Scene) -> Result<Outcome, StepError> {
-    let mut simulation = scene.simulation()?;
-    let frames = (SIMULATED / scene.settings.h).round() as usize;
-    let (mut substeps, mut length_error) = (0, 0.0_f64);
-    let start = ThreadTime::now();
-    for _ in 0..frames {
-        let report = simulation.step()?;
-        substeps += report.substeps;
-        length_error = length_error.max(report.max_relative_length_error);
-    }
-    Ok(Outcome {
-        cpu: start.elapsed(),
-        substeps,
-        length_error,
-        energy_error: simulation.energy_error(),
-        energy_error_max: simulation.energy_error_max(),
-    })
+/// One run, told as every other engine tells it: the trajectory in a file, CPU seconds and why it ended early on a line.
+fn trajectory(workload: &Workload, setting: &Setting, limit: Duration, file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut written = Writer::create(file)?;
+    let mut failed = Ok(());
+    let outcome = run(workload, setting, limit, |positions, velocities| {
+        if failed.is_ok() {
+            failed = written.frame(positions, velocities);
+        }
+    })?;
+    failed?;
+    written.finish()?;
+    let quickest = quickest(outcome, || run(workload, setting, limit, |_, _| ()))?;
+    println!("{} {}", quickest.cpu.as_secs_f64(), quickest.ended.unwrap_or_default());
+    Ok(())
 }

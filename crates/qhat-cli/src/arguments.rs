@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Play(Play),
     /// List the scenes that come with qhat, or print one to start from
     Scenes(Scenes),
+    /// Measure what known workloads cost on this machine, beside what they get wrong
+    Bench(Bench),
     /// Print the JSON Schema of scene files
     Schema,
     /// Print a completion script for a shell
@@ -111,4 +113,23 @@ pub(crate) struct Scenes {
     /// Print the list as JSON
     #[arg(long, conflicts_with = "name")]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Bench {
+    /// Workloads such as chain100, heavy1000, net32, cloth32, truss20, truss20r, four-bar, star1000, many20 [default: all]
+    #[arg(value_name = "WORKLOAD")]
+    pub(crate) workloads: Vec<String>,
+
+    /// At this integrator and tolerance alone, as in dop853:1e-4 [default: several of each]
+    #[arg(long, value_name = "SETTING")]
+    pub(crate) setting: Option<String>,
+
+    /// Write the numbers to this file too, which must not exist
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) csv: Option<PathBuf>,
+
+    /// CPU time after which a run is stopped at the end of its frame [s]
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
+    pub(crate) limit: f64,
 }

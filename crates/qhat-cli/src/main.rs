@@ -4,6 +4,7 @@
 //! 2 bad input, 130 interrupted.
 
 mod arguments;
+mod bench;
 mod check;
 mod failure;
 mod play;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Play(arguments) => play::play(&arguments),
         Command::Scenes(arguments) => scenes::scenes(&arguments),
+        Command::Bench(arguments) => bench::bench(&arguments),
         Command::Schema => print::json(&qhat_scene::json_schema()).map(|()| ExitCode::SUCCESS),
         Command::Completions { shell } => completions(shell),
     };

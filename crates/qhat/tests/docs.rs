@@ -70,7 +70,7 @@ fn every_path_named_in_a_document_exists() {
         for path in read(&document).split('`').skip(1).step_by(2) {
             let is_path = path.contains('/')
                 && path.chars().all(|c| c.is_ascii_alphanumeric() || "._-/".contains(c))
-                && ["crates/", "docs/", "scenes/", "playground/", "scripts/", "target/", ".ci/"]
+                && ["crates/", "docs/", "scenes/", "playground/", "scripts/", "target/", ".ci/", "benches/"]
                     .iter()
                     .any(|start| path.starts_with(start));
             if is_path && !made.iter().any(|start| path.starts_with(start)) {

@@ -1,0 +1,128 @@
+//! Six small pieces of work whose instructions callgrind counts: the count hardly moves with what else the machine does, so
+//! a change of a few in a hundred shows, where a time would not.
+
+use crate::setting::Setting;
+use crate::workload::Workload;
+use qhat::{Integrator, Settings, Simulation, Workspace, evaluate, project};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use std::{env, fs, io};
+
+type Kernel = Box<dyn FnMut()>;
+type SetUp = fn() -> Kernel;
+
+/// Each kernel by its name, with what sets it up.
+const KERNELS: [(&str, SetUp); 6] = [
+    ("chain100-dop853-frame", || frame("chain100", Integrator::Dop853)),
+    ("chain100-rattle-frame", || frame("chain100", Integrator::Rattle)),
+    ("net32-rattle-frame", || frame("net32", Integrator::Rattle)),
+    ("truss20r-dop853-frame", || frame("truss20r", Integrator::Dop853)),
+    ("net32-projection", projection),
+    ("chain100-evaluate", terms),
+];
+
+fn workload(name: &str) -> Workload {
+    name.parse().expect("kernels name workloads")
+}
+
+/// One frame of 1 ms, after 0.1 s of motion: at the start nothing moves and a step is cheaper than it will be.
+fn frame(name: &str, integrator: Integrator) -> Kernel {
+    let (system, state) = workload(name).system();
+    let settings = Setting { integrator, tolerance: 1e-4 }.settings(1e-3);
+    let mut simulation = Simulation::new(system, state, settings).expect("the start is consistent");
+    simulation.advance(0.1).expect("a short motion succeeds");
+    Box::new(move || {
+        black_box(simulation.step().expect("one frame more succeeds"));
+    })
+}
+
+/// Brings a net back whose particles were moved by up to a hundredth of a rod.
+fn projection() -> Kernel {
+    let net = workload("net32");
+    let (system, state) = net.system();
+    let coordinates = net.positions.len();
+    let moved = net.positions.iter().enumerate().map(|(i, x)| x + 1e-4 * (i as f64 * 0.7).sin()).collect();
+    let mut state = state.at(moved, vec![0.0; coordinates]);
+    let mut workspace = Workspace::new(&system);
+    Box::new(move || {
+        let found = project(&system, &mut state, &Settings::default(), &mut workspace);
+        black_box(found.expect("a net is found near by"));
+    })
+}
+
+/// Every symbol of one evaluation.
+fn terms() -> Kernel {
+    let (system, state) = workload("chain100").system();
+    Box::new(move || {
+        black_box(evaluate(&system, &state));
+    })
+}
+
+/// What callgrind counts: it is told to collect inside this function alone.
+#[inline(never)]
+fn counted(kernel: &mut dyn FnMut()) {
+    kernel();
+}
+
+/// Sets one kernel up and runs it once; this is what runs under callgrind. Tells whether there is one of this name.
+pub fn run_one(name: &str) -> bool {
+    let Some((_, set_up)) = KERNELS.iter().find(|(known, _)| *known == name) else { return false };
+    counted(&mut *set_up());
+    true
+}
+
+/// Counts the instructions of every kernel and prints them beside those kept in the file; `keep` writes the file anew. Where
+/// there is no valgrind that is said, and nothing is compared.
+///
+/// # Errors
+/// A file that cannot be read or written, a count that callgrind does not give.
+pub fn compare(baseline: &Path, keep: bool) -> Result<(), Box<dyn Error>> {
+    let kept = read(baseline)?;
+    let mut csv = String::from("kernel,instructions\n");
+    println!("{:<24} {:>14} {:>14} {:>8}", "kernel", "instructions", "kept", "ratio");
+    for (name, _) in KERNELS {
+        let Some(count) = count(name)? else {
+            println!("valgrind is not installed, so no instructions are counted");
+            return Ok(());
+        };
+        let (before, ratio) = match kept.get(name) {
+            Some(&before) => (before.to_string(), format!("{:.3}", count as f64 / before as f64)),
+            None => ("–".to_owned(), "–".to_owned()),
+        };
+        println!("{name:<24} {count:>14} {before:>14} {ratio:>8}");
+        writeln!(csv, "{name},{count}")?;
+    }
+    if keep {
+        fs::write(baseline, csv)?;
+    }
+    Ok(())
+}
+
+fn read(baseline: &Path) -> Result<BTreeMap<String, u64>, Box<dyn Error>> {
+    let text = match fs::read_to_string(baseline) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+        read => read?,
+    };
+    let pairs = text.lines().skip(1).filter_map(|line| line.split_once(','));
+    pairs.map(|(name, count)| Ok((name.to_owned(), count.parse()?))).collect()
+}
+
+/// Instructions of one kernel, by this very program under callgrind; none where there is no valgrind.
+fn count(name: &str) -> Result<Option<u64>, Box<dyn Error>> {
+    let valgrind = Command::new("valgrind")
+        .args(["--tool=callgrind", "--toggle-collect=*kernels*counted*", "--callgrind-out-file=/dev/null"])
+        .arg(env::current_exe()?)
+        .args(["kernel", name])
+        .output();
+    let output = match valgrind {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        ran => ran?,
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    let collected = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    collected.map(Some).ok_or_else(|| format!("callgrind counted nothing in {name}:\n{said}").into())
+}

@@ -1,0 +1,57 @@
+//! The file an engine leaves behind: for every frame the positions \[m\] and then the velocities \[m/s\] of all particles, d·n
+//! numbers each, as little-endian f64 and nothing else.
+
+use crate::errors::Errors;
+use crate::workload::Workload;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// Writes a trajectory frame by frame.
+#[derive(Debug)]
+pub struct Writer(BufWriter<File>);
+
+impl Writer {
+    /// Begins a file, over one that exists.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        Ok(Writer(BufWriter::new(File::create(path)?)))
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn frame(&mut self, positions: &[f64], velocities: &[f64]) -> io::Result<()> {
+        positions.iter().chain(velocities).try_for_each(|number| self.0.write_all(&number.to_le_bytes()))
+    }
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// Measures a trajectory; also tells how many whole frames it has.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn measure(workload: &Workload, path: &Path) -> io::Result<(usize, Errors)> {
+    let numbers: Vec<f64> = fs::read(path)?
+        .chunks_exact(size_of::<f64>())
+        .map(|bytes| f64::from_le_bytes(bytes.try_into().expect("chunks are as long as a number")))
+        .collect();
+    let coordinates = workload.positions.len();
+    let mut errors = Errors::of(workload);
+    let mut frames = 0;
+    for frame in numbers.chunks_exact(2 * coordinates) {
+        errors.frame(workload, &frame[..coordinates], &frame[coordinates..]);
+        frames += 1;
+    }
+    Ok((frames, errors))
+}
