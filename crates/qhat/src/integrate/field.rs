@@ -91,7 +91,7 @@ impl<const D: usize> Field for Rows<'_, D> {
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         let motion = Motion::<D> { q: flat_q, qd: flat_qd };
-        equation.solve(self.system, motion, &self.feedback, self.is_factored, Multipliers::Any);
+        equation.solve(self.system, motion, &self.feedback, self.is_factored, Multipliers::Force);
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
@@ -109,7 +109,7 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
                 equation.rows.J.multiply::<D>(flat_qd, &mut equation.b.sum);
-                equation.solver.solve(matrix, &equation.b.sum, Multipliers::Any, delta);
+                equation.solver.solve(matrix, &equation.b.sum, Multipliers::Correction, delta);
                 add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
                 equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
                 pack(flat_q, q);
@@ -120,7 +120,7 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off.is_infinite() {
                 break;
             }
-            equation.solver.solve(matrix, &equation.rows.C, Multipliers::Any, delta);
+            equation.solver.solve(matrix, &equation.rows.C, Multipliers::Correction, delta);
             add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_q);
         }
         Projected::NotMet

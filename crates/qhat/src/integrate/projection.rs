@@ -73,7 +73,7 @@ fn positions<const D: usize>(
             return Ok((before, iteration));
         }
         equation.factor::<D>(system, 0.0);
-        equation.solver.solve(&system.matrix, &equation.rows.C, Multipliers::Any, &mut delta);
+        equation.solver.solve(&system.matrix, &equation.rows.C, Multipliers::Correction, &mut delta);
         let J = equation.rows.J.clone();
         start.copy_from_slice(q);
         let mut fraction = 1.0;
@@ -108,7 +108,7 @@ fn velocities<const D: usize>(system: &System, equation: &mut Equation, q: &[f64
     if rate * system.extent > CONSISTENT_RATE * fastest {
         equation.factor::<D>(system, 0.0);
         let mut nu = vec![0.0; equation.rows.Cd.len()];
-        equation.solver.solve(&system.matrix, &equation.rows.Cd, Multipliers::Any, &mut nu);
+        equation.solver.solve(&system.matrix, &equation.rows.Cd, Multipliers::Force, &mut nu);
         add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &nu, -1.0, qd);
     }
 }

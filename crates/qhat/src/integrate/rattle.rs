@@ -182,7 +182,7 @@ fn substep<const D: usize>(
             return None;
         }
         last = off;
-        equation.solver.solve(matrix, &equation.rows.C, Multipliers::Any, &mut scratch.delta);
+        equation.solver.solve(matrix, &equation.rows.C, Multipliers::Correction, &mut scratch.delta);
         for (mu, delta) in scratch.mu.iter_mut().zip(&scratch.delta) {
             *mu -= delta;
         }
@@ -209,7 +209,7 @@ fn substep<const D: usize>(
     // ν in one solve, with the factor at q'.
     equation.factor::<D>(system, 0.0);
     equation.rows.J.multiply::<D>(qd, &mut scratch.delta);
-    equation.solver.solve(matrix, &scratch.delta, Multipliers::Any, &mut scratch.nu);
+    equation.solver.solve(matrix, &scratch.delta, Multipliers::Force, &mut scratch.nu);
     for nu in &mut scratch.nu {
         *nu = -*nu;
     }

@@ -13,7 +13,12 @@ static RK4: Tableau =
     Tableau::new(&[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]], &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]);
 
 pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, workspace: &mut Workspace) -> StepWork {
-    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.factored_at == state.q;
+    let solver = &mut workspace.equation.solver;
+    // What was singular is asked anew, so that it does not matter who looked between two steps.
+    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.factored_at == state.q && !solver.deficient;
+    if !is_factored {
+        solver.stays_deficient = false;
+    }
     let mut stages = std::mem::take(&mut workspace.stages);
     let mut field = Rows::<D> { system, workspace, feedback: system.feedback, is_factored };
     stages.resize(field.blocks());

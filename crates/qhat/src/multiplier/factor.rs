@@ -24,12 +24,23 @@ const TINY_PIVOT: f64 = 1e-12;
 /// amplified by 1/δ, so it must lie well above 1e-16.
 const REGULARIZATION: f64 = 1e-8;
 
+/// δ where only the force is wanted: what it amplifies in the null space then does no harm, and a long truss, whose smallest
+/// eigenvalue lies below 1e-8, needs a few passes instead of all.
+const SLIGHT: f64 = 1e-12;
+
 /// A solution that misses its right side by more than this, relative, was not solved by the plain factor. Under a load of a
 /// billion beads x is a billion times b, and the rounding of x alone misses b by 1e-7; G would let such a load fall.
 const ACCEPTED_RESIDUAL: f64 = 1e-6;
 
-/// Where refinement has arrived: a few times roundoff.
-const REFINED: f64 = 1e-14;
+/// Where refinement has arrived, by what is wanted: a few times roundoff; what leaves q̈ ten digits in the worst structures; and
+/// what makes the next correction a thousand times smaller.
+const fn refined(wanted: Multipliers) -> f64 {
+    match wanted {
+        Multipliers::Least => 1e-14,
+        Multipliers::Force => 1e-12,
+        Multipliers::Correction => 1e-3,
+    }
+}
 
 /// Refinement and null(·) converge in two to five passes where they converge; they must not go on for ever elsewhere.
 const PASSES: usize = 10;
@@ -46,8 +57,10 @@ const CONTRADICTION: f64 = 1e-8;
 pub(crate) enum Multipliers {
     /// The least, for people to look at.
     Least,
-    /// Any: only the force they make is wanted.
-    Any,
+    /// Any that makes the force.
+    Force,
+    /// Any that nearly makes it: a correction that is looked at afterwards, and made again if need be.
+    Correction,
 }
 
 /// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
@@ -59,6 +72,8 @@ pub(crate) struct MultiplierSolver {
     scaled: Vec<f64>,
     /// Whether G is in use.
     pub(crate) deficient: bool,
+    /// δ.
+    delta: f64,
     /// Whether to take G at once the next time: until someone asks anew, what was singular is taken to stay so.
     pub(crate) stays_deficient: bool,
     /// Whether M has a null space. Where there are hubs, G may be needed although it has none.
@@ -81,6 +96,7 @@ impl MultiplierSolver {
             scale: vec![0.0; m],
             scaled: vec![0.0; matrix.pattern.len()],
             deficient: false,
+            delta: REGULARIZATION,
             stays_deficient: false,
             singular: false,
             dropped: 0,
@@ -133,7 +149,7 @@ impl MultiplierSolver {
         }
         self.deficient = false;
         if self.stays_deficient {
-            return self.regularize(matrix);
+            return self.add_delta(matrix, SLIGHT);
         }
         self.singular = false;
         self.factorizations += 1;
@@ -145,15 +161,20 @@ impl MultiplierSolver {
 
     /// Goes over to G, unless it is in use.
     pub(crate) fn regularize(&mut self, matrix: &MatrixStructure) {
-        if self.deficient {
-            return;
+        if !self.deficient {
+            // Whether there is a null space is asked of the larger δ; without hubs there must be one.
+            let has_hubs = !matrix.on_hubs.is_empty();
+            self.add_delta(matrix, if has_hubs { REGULARIZATION } else { SLIGHT });
+            self.singular = !has_hubs || self.has_null_space(matrix);
+            self.stays_deficient = true;
         }
-        let is_news = !self.stays_deficient;
-        (self.deficient, self.stays_deficient) = (true, true);
+    }
+
+    /// G for one δ.
+    fn add_delta(&mut self, matrix: &MatrixStructure, delta: f64) {
+        (self.deficient, self.delta) = (true, delta);
         self.factorizations += 1;
-        self.factor.factor(&matrix.pattern, &self.scaled, REGULARIZATION);
-        // Which of the two a hub means is asked once.
-        self.singular = matrix.on_hubs.is_empty() || if is_news { self.has_null_space(matrix) } else { self.singular };
+        self.factor.factor(&matrix.pattern, &self.scaled, delta);
     }
 
     /// λ ← (A + ε I)⁻¹ b, or a λ that comes nearest where the matrix is singular.
@@ -165,8 +186,11 @@ impl MultiplierSolver {
         if !self.deficient && !self.solve_plain(matrix) {
             self.regularize(matrix);
         }
-        if self.deficient && (wanted == Multipliers::Least || !self.refine(matrix)) {
-            self.solve_least(matrix);
+        if self.deficient {
+            let is_met = wanted != Multipliers::Least && self.refine(matrix, wanted);
+            if !is_met && wanted != Multipliers::Correction {
+                self.solve_least(matrix);
+            }
         }
         for (i, &row) in matrix.order.iter().enumerate() {
             if !matrix.is_hub(row) {
@@ -186,6 +210,9 @@ impl MultiplierSolver {
     }
 
     fn solve_least(&mut self, matrix: &MatrixStructure) {
+        if self.delta != REGULARIZATION {
+            self.add_delta(matrix, REGULARIZATION);
+        }
         let size = largest(&self.b);
         self.y.copy_from_slice(&self.b);
         self.keep_null_space(matrix, size);
@@ -193,7 +220,7 @@ impl MultiplierSolver {
             self.b[i] -= self.y[i];
         }
         self.contradiction = if size > 0.0 { largest(&self.y) / size } else { 0.0 };
-        self.refine(matrix);
+        self.refine(matrix, Multipliers::Least);
         self.y.copy_from_slice(&self.x);
         self.clear_hubs(matrix);
         self.keep_null_space(matrix, largest(&self.y));
@@ -203,13 +230,13 @@ impl MultiplierSolver {
     }
 
     /// x ← x + G (b − M x) from 0; whether b was met but for roundoff.
-    fn refine(&mut self, matrix: &MatrixStructure) -> bool {
+    fn refine(&mut self, matrix: &MatrixStructure, wanted: Multipliers) -> bool {
         let size = largest(&self.b);
         self.x.fill(0.0);
         self.r.copy_from_slice(&self.b);
         let mut reached = size;
         for _ in 0..PASSES {
-            if reached.is_nan() || reached <= REFINED * size {
+            if reached.is_nan() || reached <= refined(wanted) * size {
                 break;
             }
             self.factor.solve(&mut self.r);
