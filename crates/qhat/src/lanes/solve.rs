@@ -19,8 +19,9 @@ pub(super) struct Solve<'a, B, const D: usize> {
     pub(super) groups: &'a [Group],
     pub(super) q: &'a [F8],
     pub(super) right: &'a B,
-    /// Those of these groups alone, as `out`.
+    /// Room for the rows of the largest group.
     pub(super) rows: &'a mut [Eliminated],
+    /// Of these groups alone.
     pub(super) out: &'a mut [F8],
 }
 
@@ -49,12 +50,13 @@ impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R, const D: usize>
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let mut is_regular = true;
-        let (mut rows, mut out) = (self.rows, self.out);
+        let mut out = self.out;
         for stretch in self.plan.stretches(self.groups) {
             let (blocks, at) = (stretch.group.rows + 1, stretch.group.coordinates::<D>());
             let right = (self.right)(stretch, at.clone());
-            is_regular &= solve(simd, stretch, &self.q[at], &right, rows, out);
-            (rows, out) = (&mut rows[blocks..], &mut out[blocks * D..]);
+            // The same rows for each group: they are of no use afterwards, and stay near.
+            is_regular &= solve(simd, stretch, &self.q[at], &right, self.rows, out);
+            out = &mut out[blocks * D..];
         }
         is_regular
     }
