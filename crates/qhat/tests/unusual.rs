@@ -245,6 +245,15 @@ fn lanes_take_a_load_of_a_billion() {
     }
 }
 
+/// 500 rows a lane, each with a pivot of some 0.01 m²/kg: their product would be 1e-1000.
+#[test]
+fn long_stretches_keep_their_pivots_in_range() {
+    let (system, state) = systems::chain(4000, 1.0);
+    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Dop853, 1e-3)).unwrap();
+    let report = simulation.step().unwrap();
+    assert_eq!((report.solver, &report.warnings[..]), (Solver::Lanes, &[][..]));
+}
+
 #[test]
 fn the_classic_formulation_and_two_rods_between_the_same_particles() {
     let (system, state) = systems::chain(20, 10.0);

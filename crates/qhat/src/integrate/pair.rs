@@ -212,7 +212,7 @@ mod tests {
         let mut builder = System::builder(Dimension::Two);
         let corners =
             [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75]].map(|x| builder.particle(Particle::at(format!("{x:?}"), x)));
-        let hook = builder.particle(Particle::at("hook", [-1.0, 0.0]).held());
+        let hook = builder.particle(Particle::at("hook", [-0.6, 0.8]).held());
         for (name, a, b) in [("ab", 0, 1), ("bc", 1, 2), ("ca", 2, 0)] {
             let length = if name == "ab" { 1.0 } else { 0.8125_f64.sqrt() };
             builder.constraint(name, Distance::new(corners[a], corners[b], length));
