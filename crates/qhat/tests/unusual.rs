@@ -24,7 +24,7 @@ fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
         let mut x: Vec<f64> = (0..d).map(|_| 3.0 * random.within(-1.0, 1.0)).collect();
         let (first, last) = (random.below(4), random.below(4));
         for i in 0..=links {
-            let mass = if random.below(20) == 0 { heavy } else { 10.0_f64.powi(random.below(5) as i32 - 2) };
+            let mass = if random.below(20) == 0 { heavy } else { [0.01, 0.1, 1.0, 10.0, 100.0][random.below(5)] };
             let particle = Particle::at(format!("{chain}-{i}"), x.clone()).with_mass(mass);
             let (is_first, is_last) = (i == 0, i == links && links > 0);
             let is_held = is_first && first == 0 || is_last && last == 0;
