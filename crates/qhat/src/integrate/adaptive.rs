@@ -3,7 +3,7 @@
 use super::control;
 use super::projection::worst_row;
 use super::{Workspace, check_finite};
-use crate::error::StepError;
+use crate::error::{SettingsError, StepError};
 use crate::measure::{self, Drift};
 use crate::multiplier::Equation;
 use crate::point::Motion;
@@ -11,6 +11,18 @@ use crate::report::StepReport;
 use crate::settings::{Feedback, Settings};
 use crate::state::{Carry, State};
 use crate::system::{System, in_dimension};
+
+/// Refuses a frame that would never end, or end before it began.
+///
+/// # Errors
+/// A length that is not finite and positive.
+pub(super) fn check_length(length: f64) -> Result<(), SettingsError> {
+    if length.is_finite() && length > 0.0 {
+        Ok(())
+    } else {
+        Err(SettingsError::OutOfRange { name: "frame", value: length, range: "finite and positive" })
+    }
+}
 
 /// A substep this much shorter than the frame means that shortening it does not help.
 const SHORTEST: f64 = 1e-12;
@@ -147,7 +159,8 @@ impl<'a> Frame<'a> {
             report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
             report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
             let max_substeps = self.settings.max_substeps;
-            if report.substeps >= max_substeps && self.done < self.length {
+            // With a limit of its own the frame ends at that.
+            if report.substeps >= max_substeps && self.done < self.length && self.limit == usize::MAX {
                 return Err(StepError::TooManySubsteps { time: state.t, max_substeps });
             }
         }

@@ -8,7 +8,7 @@
 //! What is lost with BDF2 is energy, and the fast oscillations that h cannot show; rods hold all the same. The report says who
 //! carried the frame.
 
-use super::{Workspace, bdf2, dop853, end_of_step, pair};
+use super::{Workspace, adaptive, bdf2, dop853, end_of_step, pair};
 use crate::error::StepError;
 use crate::report::{StepReport, Warning};
 use crate::settings::{Integrator, Settings};
@@ -28,6 +28,7 @@ pub(super) fn frame<const D: usize>(
     length: f64,
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
+    adaptive::check_length(length)?;
     let (start, limit) = (state.t, most_substeps(system, settings));
     let resting = state.carry.as_ref().map_or(0, |carry| carry.resting);
     let mut report = StepReport::default();

@@ -78,6 +78,7 @@ pub(super) fn carry_on<const D: usize>(
     limit: usize,
     workspace: &mut Workspace,
 ) -> Result<(StepReport, bool), StepError> {
+    adaptive::check_length(length)?;
     let mut frame = Frame::new(system, settings, state, length).within(limit);
     let mut carry = state.carry.take();
     if let Some(plan) = &system.plan
@@ -103,7 +104,10 @@ pub(super) fn carry_on<const D: usize>(
     workspace.stages = stages;
     let end = end?;
     frame.report.solver = Solver::Rows;
-    workspace.factored_at.clone_from(&state.q);
+    if end == End::Whole {
+        // What ran out of work may have ended on a substep that was taken back: the factor is then that of one of its stages.
+        workspace.factored_at.clone_from(&state.q);
+    }
     frame.report.factorizations += workspace.equation.solver.factorizations - factorizations;
     let lambda = workspace.equation.lambda.clone();
     Ok((frame.finish(state, Some((lambda, &workspace.equation))), end == End::Whole))
@@ -132,8 +136,13 @@ impl<F: Field> Method for Run<'_, F> {
     }
 
     fn attempt(&mut self, _: &State, h: f64) -> Outcome {
-        let Some(work) = advance(&self.pair.tableau, &mut self.field, self.stages, h) else { return Outcome::Singular };
+        let Some(work) = advance(&self.pair.tableau, &mut self.field, self.stages, h) else {
+            return if self.stages.overflow() { Outcome::NotMet } else { Outcome::Singular };
+        };
         let error = self.error(h);
+        if error.is_nan() && self.stages.overflow() {
+            return Outcome::NotMet;
+        }
         let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation };
         if error > MISSED * self.settings.tolerance || error.is_nan() {
             return Outcome::Met(attempt);
@@ -187,5 +196,37 @@ impl<F: Field> Run<'_, F> {
             largest = if error.is_nan() { error } else { largest.max(error) };
         }
         largest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dop853::DOP853;
+    use super::*;
+    use crate::system::{Dimension, Particle};
+    use crate::{Distance, Gravity};
+
+    /// The work ends on a substep that was taken back: what is solved next must not use the factor of one of its stages.
+    #[test]
+    fn work_that_runs_out_leaves_no_factor_of_a_stage() {
+        let mut builder = System::builder(Dimension::Two);
+        let corners =
+            [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75]].map(|x| builder.particle(Particle::at(format!("{x:?}"), x)));
+        let hook = builder.particle(Particle::at("hook", [-0.6, 0.8]).held());
+        for (name, a, b) in [("ab", 0, 1), ("bc", 1, 2), ("ca", 2, 0)] {
+            let length = if name == "ab" { 1.0 } else { 0.8125_f64.sqrt() };
+            builder.constraint(name, Distance::new(corners[a], corners[b], length));
+        }
+        builder.constraint("hanger", Distance::new(hook, corners[0], 1.0));
+        builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
+        let (system, start) = builder.build().unwrap();
+        let settings = Settings::default();
+        let (mut state, mut workspace) = (start.clone(), Workspace::new(&system));
+        let (report, is_whole) =
+            carry_on::<2>(&DOP853, &system, &mut state, &settings, 2.0, 1, &mut workspace).unwrap();
+        assert_eq!((report.substeps, report.rejected, is_whole), (0, 1, false));
+        assert_eq!(state.q, start.q);
+        let expected = Workspace::new(&system).solve::<2>(&system, &state, &Feedback::NONE).lambda.clone();
+        assert_eq!(workspace.solve::<2>(&system, &state, &Feedback::NONE).lambda, expected);
     }
 }

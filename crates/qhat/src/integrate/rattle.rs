@@ -87,6 +87,7 @@ pub(super) fn frame<const D: usize>(
     length: f64,
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
+    adaptive::check_length(length)?;
     let factorizations = workspace.equation.solver.factorizations;
     let mut frame = Frame::new(system, settings, state, length);
     let carry = state.carry.take();

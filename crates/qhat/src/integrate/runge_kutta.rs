@@ -17,12 +17,16 @@
 
 use super::StepWork;
 use super::field::{Field, Power};
-use crate::lanes::{F8, V, vector_unit};
+use crate::lanes::{F8, Largest, V, vector_unit};
 use crate::threads;
 use pulp::{Simd, WithSimd};
 
 /// Work for one thread [blocks]: some 20 µs, a hundred times what handing it over costs.
 const SHARE: usize = 4096;
+
+/// The square of a larger number [m or m/s] leaves the range of numbers in sums of a few: J and A are made of squares, and of
+/// their products.
+const OVERFLOW: f64 = 1e60;
 
 /// Most stages of any method here.
 pub(super) const STAGES: usize = 12;
@@ -135,6 +139,16 @@ impl Stages {
         self.is_first_known = false;
     }
 
+    /// Whether the substep tried last was so long that numbers lost their range on the way, although where it began all is
+    /// finite: then a shorter one is worth trying.
+    pub(super) fn overflow(&self) -> bool {
+        let largest = |numbers: &[F8]| vector_unit().dispatch(Largest(numbers));
+        let is_within = |numbers: &[F8]| largest(numbers) < OVERFLOW;
+        let begins_well = self.is_first_known && [&self.q, &self.qd, &self.slope[0]].into_iter().all(|x| is_within(x));
+        let ends_well = [&self.stage_q, &self.stage_qd].into_iter().all(|x| is_within(x));
+        begins_well && !ends_well
+    }
+
     /// What was tried becomes the motion at hand.
     pub(super) fn accept(&mut self) {
         std::mem::swap(&mut self.q, &mut self.next_q);
@@ -158,8 +172,7 @@ pub(super) fn advance<F: Field>(tableau: &Tableau, field: &mut F, stages: &mut S
     }
     Combine { weights: &tableau.end, h, q, qd, slope, first: 0, out_q: next_q, out_qd: next_qd }.write();
     let mut work = StepWork { dissipation: 0.0, stabilization: 0.0 };
-    for (weight, power) in tableau.end.velocity.iter().zip(power) {
-        // Beyond the stages in use the power is that of another method; its weight is zero.
+    for (weight, power) in tableau.end.velocity.iter().zip(power).take(tableau.stages) {
         work.dissipation += weight * h * power.dissipation;
         work.stabilization += weight * h * power.stabilization;
     }

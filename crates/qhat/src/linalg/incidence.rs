@@ -3,6 +3,7 @@
 //! A graph of rods in the words of this folder: a rod is an unknown, a particle a point. It is far smaller than the pattern of
 //! the matrix, where every point becomes a clique.
 
+#[cfg(test)]
 use super::Pattern;
 
 /// Both directions of "unknown u touches point p", each as one list cut by starts; the lists of points ascend.
@@ -41,7 +42,7 @@ impl Incidence {
     }
 
     /// Every coupling of a pattern becomes a point.
-    #[allow(dead_code, reason = "for matrices that do not come from a System: tests, so far")]
+    #[cfg(test)]
     pub(crate) fn of_pattern(pattern: &Pattern) -> Self {
         let n = pattern.order();
         let mut lists = vec![Vec::new(); n];

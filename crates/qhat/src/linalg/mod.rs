@@ -50,7 +50,7 @@ pub(crate) enum Factor {
 
 impl Factor {
     /// Chooses the method and the order and prepares everything that depends on the pattern alone.
-    #[allow(dead_code, reason = "for matrices that do not come from a System: tests, so far")]
+    #[cfg(test)]
     pub(crate) fn new(pattern: &Pattern) -> Self {
         if pattern.order() <= DENSE_UP_TO {
             return Factor::Dense(DenseLdl::new(pattern.order()));

@@ -11,7 +11,7 @@ pub(crate) struct Pattern {
 
 impl Pattern {
     /// From the columns of each row; the diagonal and the order are seen to here.
-    #[allow(dead_code, reason = "for matrices that do not come from a System: tests, so far")]
+    #[cfg(test)]
     pub(crate) fn from_rows(rows: Vec<Vec<usize>>) -> Self {
         let mut pattern = Pattern { start: vec![0], column: Vec::new() };
         for (i, mut columns) in rows.into_iter().enumerate() {
