@@ -4,8 +4,7 @@ use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
-    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System,
-    Warning,
+    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System, Warning,
 };
 use wasm_bindgen::JsValue;
 
