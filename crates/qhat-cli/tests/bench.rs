@@ -23,8 +23,8 @@ fn a_workload_is_measured_under_one_setting() {
         // What qhat promises of every rod, and what a tolerance of 1e-4 is good for.
         assert!(number("worst_length_error") <= 1e-10 && number("energy_error").abs() <= 1e-2, "{line}");
         assert!(number("cpu_ms_per_simulated_s") > 0.0, "{line}");
-        // An open chain goes in lanes, where no A is factored.
-        assert_eq!(number("factorizations") > 0.0, name == "four-bar", "{line}");
+        // Both are open chains, a four-bar between its two nails too: in lanes no A is factored.
+        assert_eq!(number("factorizations"), 0.0, "{line}");
     }
 }
 
