@@ -2,6 +2,7 @@
 
 import start, {
   type Controls,
+  default_frame_work,
   type Energy,
   type InitOutput,
   type IntegratorFacts,
@@ -52,6 +53,11 @@ export function startEngine(): Promise<InitOutput> {
 
 export function integrators(): IntegratorFacts[] {
   return integratorFacts();
+}
+
+/** Row solves a frame that auto may take where a scene does not say. */
+export function defaultFrameWork(): number {
+  return default_frame_work();
 }
 
 export function shippedScenes(): Shipped[] {

@@ -9,7 +9,7 @@ use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
-use qhat::{Component, Integrator, Method, Settings, Simulation, Terms, evaluate};
+use qhat::{Component, Integrator, Method, Settings, Simulation, Solver, Terms, evaluate};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -68,7 +68,31 @@ struct Findings {
     redundant: Option<bool>,
     /// What the rows fall into, components alike told once.
     components: Vec<Components>,
+    /// What a run of the scene would begin with; none where its first frame fails.
+    first_frame: Option<Beginning>,
     warnings: Vec<String>,
+}
+
+/// Who carries the first frame, and by which path to the multipliers.
+#[derive(Debug, Serialize)]
+struct Beginning {
+    integrator: &'static str,
+    carried_by: &'static str,
+    #[serde(serialize_with = "print::display")]
+    solver: Solver,
+}
+
+impl Beginning {
+    fn of(scene: &Scene) -> Option<Self> {
+        let report = scene.simulation().and_then(|mut simulation| simulation.step()).ok()?;
+        let integrator = scene.settings.integrator.name();
+        Some(Beginning { integrator, carried_by: report.integrator.name(), solver: report.solver })
+    }
+
+    fn in_words(&self) -> String {
+        let choice = if self.integrator == self.carried_by { "" } else { &format!(": {}", self.carried_by) };
+        format!("{}{choice}, {}", self.integrator, print::path(self.solver))
+    }
 }
 
 /// Connected components of A that are alike.
@@ -168,6 +192,7 @@ impl Findings {
             // Where the rank is not counted, that is because A is singular.
             redundant: feasible.then(|| rank.is_none_or(|rank| rank < rows)),
             components: Components::alike(system.components()),
+            first_frame: if feasible { Beginning::of(scene) } else { None },
             warnings,
         }
     }
@@ -201,6 +226,7 @@ impl Findings {
         if others > 0 {
             lines.push(("component", format!("and {others} smaller")));
         }
+        lines.extend(self.first_frame.iter().map(|beginning| ("first frame", beginning.in_words())));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         print::table(&format!("{}: {}", self.scene, self.verdict()), &lines)
     }

@@ -1,7 +1,9 @@
 //! Printing on stdout. A reader that has gone away (`qhat scenes | head -1`) is no error: what it wanted, it has.
 
 use crate::failure::Failure;
-use serde::Serialize;
+use qhat::Solver;
+use serde::{Serialize, Serializer};
+use std::fmt::Display;
 use std::io::{self, Write};
 
 /// Prints bytes as they are.
@@ -61,4 +63,18 @@ pub(crate) fn table(title: &str, lines: &[(&str, String)]) -> Result<(), Failure
         out += &format!("  {word:width$}  {what}\n");
     }
     text(&plain(&out))
+}
+
+/// A path to the multipliers, as the end of a sentence.
+pub(crate) fn path(solver: Solver) -> &'static str {
+    match solver {
+        Solver::Rows => "by the rows of A",
+        Solver::Lanes => "in lanes",
+        Solver::EndOfStep => "at the end of each step",
+    }
+}
+
+/// For what has one name, in JSON as on paper.
+pub(crate) fn display<S: Serializer>(value: &impl Display, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(value)
 }

@@ -22,7 +22,9 @@ fn a_workload_is_measured_under_one_setting() {
         assert_eq!(number("simulated_s"), 2.0);
         // What qhat promises of every rod, and what a tolerance of 1e-4 is good for.
         assert!(number("worst_length_error") <= 1e-10 && number("energy_error").abs() <= 1e-2, "{line}");
-        assert!(number("cpu_ms_per_simulated_s") > 0.0 && number("factorizations") > 0.0, "{line}");
+        assert!(number("cpu_ms_per_simulated_s") > 0.0, "{line}");
+        // Both are open chains, a four-bar between its two nails too: in lanes no A is factored.
+        assert_eq!(number("factorizations"), 0.0, "{line}");
     }
 }
 

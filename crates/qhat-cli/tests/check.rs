@@ -95,7 +95,8 @@ fn plain_words() {
                     start        every constraint holds exactly\n  \
                     rank         1: no row is redundant, so every tension is unique\n  \
                     freedom      1 degree of freedom\n  \
-                    component    path, 1 row: dense\n";
+                    component    path, 1 row: dense\n  \
+                    first frame  auto: dop853, in lanes\n";
     assert_eq!(said, expected);
 }
 

@@ -139,12 +139,14 @@ fn summary_has_what_scripts_need() {
     let summary = folder.qhat(&["run", "bob.toml", "--json", "-o", "bob.npz"]).well().json();
     assert_eq!(summary["status"], "done");
     assert_eq!(summary["scene"], "A bob");
-    assert_eq!(summary["integrator"], "rattle");
+    assert_eq!(summary["integrator"], "auto");
     assert_eq!(summary["frames"], 51);
+    let carried = serde_json::json!([{ "integrator": "dop853", "solver": "lanes", "frames": 50 }]);
+    assert_eq!(summary["carried"], carried, "the start is no frame that was stepped");
     assert!(summary["substeps"].as_u64().unwrap() >= 50);
     assert_eq!(summary["warnings"], serde_json::json!([]));
     assert_eq!(summary["output"], "bob.npz");
-    // What `rattle` promises with the default constraint_tolerance, and rods of 1 m.
+    // What every integrator that projects promises with the default constraint_tolerance, and rods of 1 m.
     assert!(summary["max_residual"].as_f64().unwrap() <= 1e-10);
     assert!(summary["max_relative_length_error"].as_f64().unwrap() <= 1e-10);
     for key in ["wall_seconds", "cpu_seconds", "energy_error", "energy_error_max"] {

@@ -60,6 +60,7 @@ pub fn shipped() -> &'static [Shipped] {
             "classic",
             "chain-100",
             "chain-1000",
+            "chain-10000",
         ]
     });
     &SHIPPED

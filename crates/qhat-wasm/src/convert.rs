@@ -4,7 +4,7 @@ use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
-    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System,
+    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System, Warning,
 };
 use wasm_bindgen::JsValue;
 
@@ -58,6 +58,10 @@ pub(crate) fn energy(energy: &qhat::Energy) -> Record {
 }
 
 pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
+    // What goes with auto's choice is shown beside that choice, not among the warnings.
+    let is_choice = |warning: &&Warning| matches!(warning, Warning::TooStiff { .. });
+    let too_stiff = report.warnings.iter().find(is_choice);
+    let warnings = report.warnings.iter().filter(|warning| !is_choice(warning));
     Record::new()
         .with("substeps", report.substeps as f64)
         .with("rejected", report.rejected as f64)
@@ -68,7 +72,10 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .with("max_residual_rate", report.max_residual_rate)
         .with("max_relative_length_error", report.max_relative_length_error)
         .with("energy", energy(&report.energy))
-        .with("warnings", strings(&report.warnings))
+        .with("integrator", report.integrator.name())
+        .with("solver", report.solver.to_string())
+        .with("too_stiff", too_stiff.map_or(JsValue::NULL, |warning| warning.to_string().into()))
+        .with("warnings", strings(warnings))
         .finish()
 }
 
@@ -118,6 +125,8 @@ pub(crate) fn controls(simulation: &Simulation) -> Controls {
     Record::new()
         .with("h", simulation.settings().h)
         .with("integrator", simulation.settings().integrator.name())
+        .with("frame_budget", simulation.settings().frame_budget as f64)
+        .with("frame_work", simulation.settings().frame_work as f64)
         .with("formulation", formulation(simulation.system()))
         .with("ks", feedback.ks)
         .with("kd", feedback.kd)
@@ -131,7 +140,15 @@ pub(crate) fn controls(simulation: &Simulation) -> Controls {
 /// Sets only what differs: a projection or a new factorization that nobody asked for would change the motion.
 pub(crate) fn set_controls(simulation: &mut Simulation, wanted: &JsValue) -> Result<(), JsValue> {
     let integrator = text(wanted, "integrator").parse().map_err(|cause| error("SettingsError", cause))?;
-    let settings = Settings { h: number(wanted, "h"), integrator, ..*simulation.settings() };
+    // A fraction, a negative number or NaN becomes a count that the engine takes or refuses.
+    let count = |name| number(wanted, name) as usize;
+    let settings = Settings {
+        h: number(wanted, "h"),
+        integrator,
+        frame_budget: count("frame_budget"),
+        frame_work: count("frame_work"),
+        ..*simulation.settings()
+    };
     if settings != *simulation.settings() {
         simulation.set_settings(settings).map_err(|cause| error("StepError", cause))?;
     }

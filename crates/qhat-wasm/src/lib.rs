@@ -5,7 +5,7 @@
 mod convert;
 mod record;
 
-use qhat::{Integrator, ParticleId};
+use qhat::{Integrator, ParticleId, Settings};
 use qhat_scene::Format;
 use record::{Record, error, list};
 use wasm_bindgen::prelude::*;
@@ -63,6 +63,12 @@ pub fn integrators() -> Integrators {
             .with("adaptive", integrator.is_adaptive())
     });
     list(records).unchecked_into()
+}
+
+/// The row solves a frame that `auto` may take where a scene does not say.
+#[wasm_bindgen]
+pub fn default_frame_work() -> f64 {
+    Settings::default().frame_work as f64
 }
 
 /// A scene that runs.

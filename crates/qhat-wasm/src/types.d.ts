@@ -1,7 +1,18 @@
 // The records that cross the border between the engine and the page. Field names, and in Terms also their order, are
 // those of the Rust structs; arrays are flat, particle after particle: x1 y1 x2 y2 …; SI units.
 
-export type IntegratorName = 'euler' | 'symplectic-euler' | 'rk4' | 'rattle' | 'dopri5' | 'dop853' | 'implicit' | 'bdf2';
+export type IntegratorName =
+  | 'auto'
+  | 'euler'
+  | 'symplectic-euler'
+  | 'rk4'
+  | 'rattle'
+  | 'dopri5'
+  | 'dop853'
+  | 'implicit'
+  | 'bdf2';
+/** By which path the constraints were solved. */
+export type SolverName = 'rows' | 'lanes' | 'end of step';
 /** `mixed`: a scene may write each constraint in the form it likes */
 export type FormulationName = 'modern' | 'classic' | 'mixed';
 
@@ -64,6 +75,10 @@ export interface Controls {
   /** s */
   h: number;
   integrator: IntegratorName;
+  /** of implicit and bdf2: Newton iterations a frame */
+  frame_budget: number;
+  /** of auto: row solves a frame before it goes over to bdf2 */
+  frame_work: number;
   formulation: FormulationName;
   /** 1/s² */
   ks: number;
@@ -99,6 +114,11 @@ export interface StepReport {
   max_residual_rate: number;
   max_relative_length_error: number;
   energy: Energy;
+  /** who carried the state; with auto, whom it chose */
+  integrator: IntegratorName;
+  solver: SolverName;
+  /** why auto went over to bdf2; null where it did not */
+  too_stiff: string | null;
   warnings: string[];
 }
 

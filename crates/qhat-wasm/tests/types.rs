@@ -23,3 +23,21 @@ fn every_integrator_is_named() {
         assert!(TYPES.contains(&format!("'{integrator}'")), "{integrator}");
     }
 }
+
+#[test]
+fn every_solver_is_named() {
+    for solver in [qhat::Solver::Rows, qhat::Solver::Lanes, qhat::Solver::EndOfStep] {
+        assert!(TYPES.contains(&format!("'{solver}'")), "{solver}");
+    }
+}
+
+/// The page adds one field, why auto chose as it did, and has every other by its Rust name.
+#[test]
+fn a_report_has_the_fields_of_the_engine() {
+    let report = format!("{:#?}", qhat::StepReport::default());
+    let known: Vec<&str> =
+        report.lines().filter_map(|line| line.strip_prefix("    ")?.split_once(':')).map(|(name, _)| name).collect();
+    let known: Vec<&str> = known.into_iter().filter(|name| !name.starts_with(' ')).collect();
+    let told: Vec<&str> = fields("StepReport").into_iter().filter(|name| *name != "too_stiff").collect();
+    assert_eq!(told, known);
+}

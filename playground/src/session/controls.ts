@@ -94,6 +94,7 @@ export const STEP: ControlSpec = {
 };
 
 export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
+  auto: 'dop853 where a frame can be followed in time, bdf2 where the motion is too stiff for that.',
   euler:
     'The source’s method: the force now, held over the whole step. Drifts off the constraints and gains energy.',
   'symplectic-euler':

@@ -1,6 +1,12 @@
 // One simulation that is stepped until it says it cannot go on; then it keeps its last good state and the reason.
 
-import { type Controls, EngineError, Simulation, type StepReport } from '../engine';
+import { type Controls, defaultFrameWork, EngineError, Simulation, type StepReport } from '../engine';
+
+/**
+ * Row solves a frame of auto on the page. The engine's own default waits up to a tenth of a second a frame and more,
+ * which is right for a file that is written once; a hand on the mouse needs its frame in sixteen milliseconds.
+ */
+const FRAME_WORK = 1_000_000;
 
 export class Run {
   /** why it stopped, in the engine's words; null while it goes */
@@ -21,7 +27,13 @@ export class Run {
 
   /** Throws EngineError where the text is no scene. */
   static open(text: string, sourceName: string): Run {
-    return new Run(new Simulation(text, sourceName));
+    const simulation = new Simulation(text, sourceName);
+    const controls = simulation.controls();
+    // a scene that sets its own has its reasons
+    if (controls.frame_work === defaultFrameWork()) {
+      simulation.setControls({ ...controls, frame_work: FRAME_WORK });
+    }
+    return new Run(simulation);
   }
 
   /** A second run of the same scene with its own controls, from the scene's start. */

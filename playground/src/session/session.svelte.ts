@@ -54,6 +54,10 @@ export class Session {
   /** why the run stopped at its last good state */
   stopped = $state.raw<EngineError | null>(null);
   warnings = $state.raw<string[]>([]);
+  /** whom auto chose for the last step; null before it, and under any other integrator */
+  carrier = $state.raw<Controls['integrator'] | null>(null);
+  /** why auto went over to bdf2, in the engine's words; null where it did not */
+  tooStiff = $state.raw<string | null>(null);
   residual = $state(0);
   lengthError = $state(0);
 
@@ -148,7 +152,7 @@ export class Session {
     this.structure = run.simulation.structure();
     this.controls = run.simulation.controls();
     this.original = this.controls;
-    this.ghostIntegrator = this.controls.integrator === 'euler' ? 'rattle' : 'euler';
+    this.ghostIntegrator = this.controls.integrator === 'euler' ? 'auto' : 'euler';
     this.ghostFormulation = 'modern';
     this.phase = 'ready';
     this.afterReset();
@@ -362,6 +366,9 @@ export class Session {
     this.time = simulation.time;
     this.ratio = this.clock.ratio;
     this.late = this.running && this.clock.late;
+    const choice = this.controls?.integrator === 'auto' ? report : null;
+    this.carrier = choice?.integrator ?? null;
+    this.tooStiff = choice?.too_stiff ?? null;
     this.residual = report?.max_residual ?? 0;
     this.lengthError = report?.max_relative_length_error ?? 0;
     this.ghostResidual = this.ghost?.report?.max_residual ?? 0;

@@ -1,14 +1,17 @@
 // Draws one Picture on the canvas, back to front: grid, ghost, springs, rods, nails, particles, the hand.
 
-import type { Structure } from '../engine';
+import type { Rod, Structure } from '../engine';
 import type { Camera } from './camera';
 import { drawGrid, drawScale } from './grid';
-import { drawArrow, traceFixed, traceNail, traceSpring } from './marks';
+import { drawArrow, traceChains, traceFixed, traceNail, traceSpring } from './marks';
 import { DARK, LIGHT, type Palette, TENSION_STEPS, tensionColours, tensionStep } from './palette';
 import type { Picture, Selection } from './picture';
 
 /** A usual ball's radius is at most this part of a mean rod on the screen. */
 const ROD_SHARE = 0.22;
+
+/** The smallest ball's radius, px. */
+const LEAST_RADIUS = 1.5;
 
 export class CanvasView {
   private readonly context: CanvasRenderingContext2D;
@@ -19,6 +22,10 @@ export class CanvasView {
   private radii = new Float64Array(0);
   private radiiOf: Structure | null = null;
   private radiiMost = 0;
+  /** m */
+  private meanRod = 0;
+  /** whether rods are so short on the screen that the smallest balls would touch and hide them all */
+  private crowded = false;
   private readonly at = new Float64Array(3);
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -113,8 +120,11 @@ export class CanvasView {
    */
   private measure(structure: Structure, camera: Camera): void {
     const { masses, rods } = structure;
-    const mean = rods.reduce((sum, { length }) => sum + length, 0) / Math.max(1, rods.length);
-    const most = rods.length > 0 ? Math.max(1.5, ROD_SHARE * mean * camera.scale) : Infinity;
+    if (this.radiiOf !== structure)
+      this.meanRod = rods.reduce((sum, { length }) => sum + length, 0) / Math.max(1, rods.length);
+    const shown = this.meanRod * camera.scale;
+    this.crowded = rods.length > 0 && shown < 2 * LEAST_RADIUS;
+    const most = rods.length > 0 ? Math.max(LEAST_RADIUS, ROD_SHARE * shown) : Infinity;
     if (this.radiiOf === structure && this.radiiMost === most) return;
     this.radiiOf = structure;
     this.radiiMost = most;
@@ -123,7 +133,7 @@ export class CanvasView {
     const sorted = Array.from(masses).sort((a, b) => a - b);
     const usual = sorted[Math.floor(count / 2)] || 1;
     this.radii = Float64Array.from(masses, (mass) =>
-      Math.min(18, Math.max(1.5, base * Math.cbrt(mass / usual))),
+      Math.min(18, Math.max(LEAST_RADIUS, base * Math.cbrt(mass / usual))),
     );
   }
 
@@ -176,14 +186,17 @@ export class CanvasView {
   private drawRodsByColour(picture: Picture): void {
     const { context } = this;
     const { rods } = picture.structure;
-    const steps = rods.map((_, i) => tensionStep(picture.tension[i], picture.tensionLimit));
+    const byStep: Rod[][] = Array.from({ length: TENSION_STEPS }, () => []);
+    for (let i = 0; i < rods.length; i += 1)
+      byStep[tensionStep(picture.tension[i], picture.tensionLimit)].push(rods[i]);
     context.lineWidth = this.rodWidth(picture.structure);
     context.lineCap = 'round';
+    context.lineJoin = 'round';
     for (let step = 0; step < TENSION_STEPS; step += 1) {
-      if (!steps.includes(step)) continue;
+      if (byStep[step].length === 0) continue;
       context.strokeStyle = this.colours[step];
       context.beginPath();
-      for (const [i, { a, b }] of rods.entries()) if (steps[i] === step) this.traceLine(a, b);
+      traceChains(context, this.screen, byStep[step]);
       context.stroke();
     }
     this.drawRodMarks(picture);
@@ -259,6 +272,7 @@ export class CanvasView {
     const single = camera.dimension === 2 && radii.length > 60;
     if (single) context.beginPath();
     for (const i of order) {
+      if (single && this.crowded && radii[i] === LEAST_RADIUS && !fixed[i]) continue;
       const [x, y, r] = [screen[3 * i], screen[3 * i + 1], radii[i]];
       if (!single) context.beginPath();
       context.moveTo(x + r, y);

@@ -67,3 +67,34 @@ export function drawArrow(
   context.textBaseline = 'middle';
   context.fillText(label, tx + ux * 13, ty + uy * 13);
 }
+
+/** Points of a chain nearer than this to the last one drawn are left out, px: below what anti-aliasing shows. */
+const FINEST = 0.75;
+
+/** Rods as lines; a run of rods that go on from each other is one line, its points no finer than a screen shows. */
+export function traceChains(
+  context: CanvasRenderingContext2D,
+  screen: Float64Array,
+  rods: readonly { a: number; b: number }[],
+): void {
+  let [end, x, y] = [-1, 0, 0];
+  let owed = false;
+  const settle = () => {
+    if (owed) context.lineTo(screen[3 * end], screen[3 * end + 1]);
+    owed = false;
+  };
+  for (const { a, b } of rods) {
+    if (a !== end) {
+      settle();
+      [x, y] = [screen[3 * a], screen[3 * a + 1]];
+      context.moveTo(x, y);
+    }
+    end = b;
+    const [bx, by] = [screen[3 * b], screen[3 * b + 1]];
+    owed = Math.abs(bx - x) + Math.abs(by - y) < FINEST;
+    if (owed) continue;
+    context.lineTo(bx, by);
+    [x, y] = [bx, by];
+  }
+  settle();
+}

@@ -3,7 +3,7 @@
 use super::origin::{Origin, Status};
 use crate::failure::Failure;
 use crate::print::{self, count, small};
-use qhat::{Simulation, StepReport, System, Terms, Warning};
+use qhat::{Integrator, Simulation, Solver, StepReport, System, Terms, Warning};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -26,6 +26,17 @@ pub(crate) struct Tally {
     pub(super) warnings: Vec<String>,
     /// Of the frames whose budget ran out, the one that ended farthest off: its place among the warnings, and how far.
     worst_budget: Option<(usize, f64)>,
+    /// Who carried how many frames by which path, the first who did first.
+    carried: Vec<Carried>,
+}
+
+/// Frames that one integrator carried by one path to the multipliers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Carried {
+    integrator: &'static str,
+    #[serde(serialize_with = "print::display")]
+    solver: Solver,
+    frames: usize,
 }
 
 impl Tally {
@@ -51,7 +62,17 @@ impl Tally {
         self.rejected += report.rejected;
         self.max_residual = self.max_residual.max(report.max_residual);
         self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
+        self.carry(report.integrator, report.solver);
         report.warnings.iter().for_each(|warning| self.warn(warning));
+    }
+
+    fn carry(&mut self, integrator: Integrator, solver: Solver) {
+        let integrator = integrator.name();
+        let mut known = self.carried.iter_mut();
+        match known.find(|carried| carried.integrator == integrator && carried.solver == solver) {
+            Some(carried) => carried.frames += 1,
+            None => self.carried.push(Carried { integrator, solver, frames: 1 }),
+        }
     }
 
     /// Notes where the simulation stands, be it at a frame or where a step failed.
@@ -84,6 +105,7 @@ pub(crate) struct Summary<'a> {
     error: Option<&'a str>,
     scene: &'a str,
     integrator: &'a str,
+    carried: &'a [Carried],
     h: f64,
     duration: f64,
     time_reached: f64,
@@ -108,6 +130,7 @@ impl<'a> Summary<'a> {
             error: origin.error.as_deref(),
             scene: &origin.scene,
             integrator: origin.integrator,
+            carried: &tally.carried,
             h: origin.h,
             duration: origin.duration,
             time_reached: origin.time_reached,
@@ -133,6 +156,16 @@ impl<'a> Summary<'a> {
         }
     }
 
+    /// Who carried the frames and by which path; none where no frame was reached.
+    fn carriers(&self) -> Option<String> {
+        let each = |carried: &Carried| {
+            let frames = count(carried.frames, "frame");
+            format!("{} for {frames}, {}", carried.integrator, print::path(carried.solver))
+        };
+        let list: Vec<String> = self.carried.iter().map(each).collect();
+        (!list.is_empty()).then(|| list.join("; "))
+    }
+
     /// Prints it for a person.
     pub(super) fn print(&self) -> Result<(), Failure> {
         let mut lines = vec![
@@ -150,6 +183,9 @@ impl<'a> Summary<'a> {
                 ),
             ),
         ];
+        if let Some(carriers) = self.carriers() {
+            lines.insert(2, ("carried by", carriers));
+        }
         if self.start_moved > 0.0 {
             lines.push(("start", format!("moved by up to {:.1e} m, so that every constraint holds", self.start_moved)));
         }
