@@ -82,3 +82,28 @@ fn a_restart_changes_no_bit() {
         assert_eq!(report.integrator, again.integrator);
     }
 }
+
+/// A row of a net takes as long as sixteen of a chain: fifteen substeps' worth of chain rows allow none of a net.
+#[test]
+fn rows_outside_the_lanes_count_sixteenfold() {
+    for ((system, state), expected) in
+        [(systems::net(4), Integrator::Bdf2), (systems::chain(40, 1.0), Integrator::Dop853)]
+    {
+        let settings = settings(15 * 12 * system.row_count());
+        let mut simulation = Simulation::new(system, state, settings).unwrap();
+        assert_eq!(simulation.step().unwrap().integrator, expected);
+    }
+}
+
+/// A frame in two parts ends where the frame ends, to the last bit.
+#[test]
+fn time_goes_in_whole_frames() {
+    let (system, state) = systems::chain(40, 100.0);
+    let mut simulation = Simulation::new(system, state, settings(12_000)).unwrap();
+    let mut expected = 0.0;
+    for _ in 0..60 {
+        simulation.step().unwrap();
+        expected += FRAME;
+        assert_eq!(simulation.state().time(), expected);
+    }
+}
