@@ -11,7 +11,7 @@ pub struct StepReport {
     pub substeps: usize,
     /// Substeps tried and taken back.
     pub rejected: usize,
-    /// Factorizations of A.
+    /// Factorizations of A; what goes in lanes is factored in every solve and not counted.
     pub factorizations: usize,
     /// Newton iterations on C(q) = 0.
     pub iterations: usize,

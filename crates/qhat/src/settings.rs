@@ -146,7 +146,7 @@ pub struct Settings {
     /// gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far that is.
     pub frame_budget: usize,
     /// Of auto: row solves a frame before it goes over to bdf2, ≥ 1, default 20 million. A row takes some 5 ns in a chain, and
-    /// counts sixteenfold in anything else: at the default a frame waits for a tenth of a second to a few. A page that is to be
+    /// counts sixteenfold in anything else: at the default a frame waits for some tenths of a second. A page that is to be
     /// in time takes a million.
     pub frame_work: usize,
 }
