@@ -6,7 +6,7 @@ import { laboratory } from './browser/page';
 const lab = laboratory();
 const SECONDS = 8;
 
-it.each(['chain-100', 'chain-1000', 'net', 'strandbeest'])('%s', async (scene) => {
+it.each(['chain-100', 'chain-1000', 'chain-10000', 'net', 'strandbeest'])('%s', async (scene) => {
   const { page } = await lab.open(`/?scene=${scene}`);
   const result = await page.evaluate(async (seconds) => {
     const { qhat } = window;

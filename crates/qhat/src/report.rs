@@ -106,6 +106,11 @@ pub enum Warning {
         /// How many it is allowed.
         substeps: usize,
     },
+    /// RATTLE could not meet the constraints with substeps of any length: dopri5 carried the frame on.
+    HandedOver {
+        /// t where it took over [s].
+        time: f64,
+    },
     /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
     BudgetSpent {
         /// t of the end of the step [s].
@@ -132,7 +137,11 @@ impl fmt::Display for Warning {
             ),
             Warning::TooStiff { substeps } => write!(
                 f,
-                "the motion is too stiff to be followed accurately in {substeps} substeps a frame, so bdf2 carries it: rods hold, fast oscillations are damped (raise frame_work to wait longer)"
+                "the motion is too stiff to be followed accurately in the {substeps} substeps that frame_work and max_substeps allow a frame, so bdf2 carries it: rods hold, fast oscillations are damped"
+            ),
+            Warning::HandedOver { time } => write!(
+                f,
+                "rattle could not meet the constraints at t = {time:.4} s with any substep, so dopri5 carried the frame on"
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,

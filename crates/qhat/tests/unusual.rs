@@ -284,3 +284,21 @@ fn the_classic_formulation_and_two_rods_between_the_same_particles() {
         assert!(simulation.energy_error().abs() < 1e-6);
     }
 }
+
+/// Masses 1e11 apart in one chain: what rattle corrects in a position is lost in roundoff, and dopri5 in lanes carries on.
+#[test]
+fn where_rattle_stalls_dopri5_carries_on() {
+    let (system, state) = open_chains(91, 1e9, false);
+    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Rattle, FRAME)).unwrap();
+    let mut handed_over = 0;
+    for frame in 1..=20 {
+        let report = simulation.step().unwrap_or_else(|error| panic!("frame {frame}: {error}"));
+        assert!(report.max_relative_length_error <= 1e-10, "frame {frame}");
+        let warned = report.warnings.iter().any(|warning| matches!(warning, Warning::HandedOver { .. }));
+        assert_eq!(warned, report.integrator == Integrator::Dopri5, "frame {frame}");
+        assert!(report.substeps > 0 && report.smallest_substep <= FRAME, "frame {frame}");
+        handed_over += usize::from(warned);
+    }
+    assert!((1..20).contains(&handed_over), "{handed_over} frames");
+    assert!((simulation.state().time() - 20.0 * FRAME).abs() < 1e-14, "frames add up but for rounding");
+}

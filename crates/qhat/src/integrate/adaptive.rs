@@ -29,7 +29,7 @@ const SHORTEST: f64 = 1e-12;
 
 /// How far the estimate may miss the tolerance before a substep is done again: the controller aims at the tolerance itself,
 /// and a substep that is a little too long costs less than two.
-pub(super) const MISSED: f64 = 2.0;
+pub(super) const MISSED: f64 = 3.0;
 
 /// One method on its way over one frame. It may keep the motion in arrays of its own between `begin` and `end`.
 pub(super) trait Method {

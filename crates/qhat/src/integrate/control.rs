@@ -60,9 +60,13 @@ pub(super) fn longest_substep<const D: usize>(
     (STABLE / omega_squared.sqrt()).min(TURN / turning.sqrt()).min(DAMPED / damping_rate)
 }
 
+/// The part of the way to the tolerance that one change of h goes, in logarithms. Near the bound of stability an estimate answers
+/// h more steeply than its order says, and the whole way there and back costs a rejected substep each time.
+const PART: f64 = 0.8;
+
 /// The factor by which to change h after an error of `error` where `tolerance` is allowed, for an estimate that grows with
 /// h to the power `order`.
 pub(super) fn growth(error: f64, tolerance: f64, order: f64) -> f64 {
-    // 0.9: aim a little low, a rejected substep costs a whole one. The bounds keep one odd estimate from mattering long.
-    (0.9 * libm::pow(tolerance / error, 1.0 / order)).clamp(0.2, 2.0)
+    // 0.92: aim a little low, a rejected substep costs a whole one. The bounds keep one odd estimate from mattering long.
+    (0.92 * libm::pow(tolerance / error, PART / order)).clamp(0.2, 2.0)
 }

@@ -122,8 +122,11 @@ pub(crate) fn step_for(
         }
         Integrator::Bdf2 => end_of_step::frame::<D>(&bdf2::BDF2, system, state, settings, frame, workspace),
     })?;
-    // Only auto has a choice, and says itself what it was.
-    let integrator = if settings.integrator == Integrator::Auto { report.integrator } else { settings.integrator };
+    // Those that may leave a frame to another say themselves who carried it.
+    let integrator = match settings.integrator {
+        Integrator::Auto | Integrator::Rattle => report.integrator,
+        own => own,
+    };
     Ok(StepReport { integrator, ..report })
 }
 

@@ -11,20 +11,22 @@
 //! kept over the iterations, ν in one solve with A(q'), whose factor then serves the next substep. One factorization a
 //! substep. The difference of the two multipliers comes for free and estimates the error.
 //!
-//! Fails where A(q) cannot follow the motion: the substep is halved, in the end with an error. Feedback is not used.
+//! Fails where A(q) cannot follow the motion: the substep is halved, and where no length of it does, as with masses 1e11 apart
+//! in one chain, DOPRI5 carries the rest of the frame, whose λ needs only accelerations. Feedback is not used.
 //! Source: Andersen, RATTLE, J. Comput. Phys. 52 (1983); Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
 use super::Workspace;
 use super::adaptive::{self, Attempt, Frame, Method, Outcome};
 use super::control;
 use super::projection::{add_impulse, attainable, largest, worst_row};
+use super::{dopri5, pair};
 use crate::constraint::Jacobian;
 use crate::error::StepError;
 use crate::measure::{self, Drift};
 use crate::multiplier::Multipliers;
 use crate::point::Motion;
-use crate::report::StepReport;
-use crate::settings::Settings;
+use crate::report::{StepReport, Warning};
+use crate::settings::{Integrator, Settings};
 use crate::state::State;
 use crate::system::System;
 
@@ -88,17 +90,33 @@ pub(super) fn frame<const D: usize>(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     adaptive::check_length(length)?;
-    let factorizations = workspace.equation.solver.factorizations;
+    let (start, factorizations) = (state.t, workspace.equation.solver.factorizations);
     let mut frame = Frame::new(system, settings, state, length);
     let carry = state.carry.take();
     let lambda = adaptive::begin::<D>(system, state, carry, workspace);
     workspace.factored_at.clear();
     let mut run = Run::<D> { system, settings, workspace, lambda };
-    frame.run(&mut run, state)?;
+    let end = frame.run(&mut run, state);
     let Run { workspace, lambda, .. } = run;
-    workspace.factored_at.clone_from(&state.q);
     frame.report.factorizations = workspace.equation.solver.factorizations - factorizations;
-    Ok(frame.finish(state, Some((lambda, &workspace.equation))))
+    frame.report.integrator = Integrator::Rattle;
+    match end {
+        Ok(_) => {
+            workspace.factored_at.clone_from(&state.q);
+            Ok(frame.finish(state, Some((lambda, &workspace.equation))))
+        }
+        Err(StepError::NotSatisfied { .. }) => {
+            let mut report = frame.finish(state, None);
+            report.warn(Warning::HandedOver { time: state.t });
+            state.carry = None;
+            let rest = pair::frame::<D>(&dopri5::DOPRI5, system, state, settings, start + length - state.t, workspace)?;
+            report.absorb(StepReport { integrator: Integrator::Dopri5, ..rest });
+            // The two parts of the frame add up to it but for rounding.
+            state.t = start + length;
+            Ok(report)
+        }
+        Err(error) => Err(error),
+    }
 }
 
 impl<const D: usize> Method for Run<'_, D> {
