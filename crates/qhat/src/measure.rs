@@ -37,7 +37,7 @@ impl Energy {
 /// The energy account of a state.
 pub(crate) fn energy(system: &System, state: &State) -> Energy {
     in_dimension!(system.dimension, D => {
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
     })
 }
@@ -60,7 +60,7 @@ pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>
 pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
     let mut Q = vec![0.0; system.coordinate_count()];
     in_dimension!(system.dimension, D => {
-        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd }, &mut Q);
+        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &mut Q);
         let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
         system.extent * moving.map(|i| norm(block::<D>(&Q, i))).sum::<f64>()
     })
@@ -80,8 +80,8 @@ pub(crate) struct Drift {
     pub(crate) relative_length: f64,
 }
 
-/// Reads the drift off evaluated rows.
-pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion<'_, D>) -> Drift {
+/// Reads the drift off rows that were evaluated at q.
+pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, q: &[f64]) -> Drift {
     let mut drift = Drift::default();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
     for row in (0..rows.C.len()).filter(rigid) {
@@ -96,7 +96,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion
         if let Constraint::Distance(rod) = &named.constraint
             && rod.compliance == 0.0
         {
-            let length = norm(minus(motion.x(rod.a), motion.x(rod.b)));
+            let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));
             drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
         }
     }

@@ -137,7 +137,7 @@ impl Workspace {
     pub(crate) fn tension(&mut self, system: &System, state: &State, feedback: &Feedback) -> Vec<f64> {
         in_dimension!(system.dimension, D => {
             let equation = self.solve::<D>(system, state, feedback);
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
             tension(system, motion, &equation.lambda, 1.0 - feedback.elasticity)
         })
     }

@@ -96,7 +96,7 @@ pub(super) fn frame<const D: usize>(
     let mut run = Run::<D> { system, settings, workspace, lambda };
     frame.run(&mut run, state)?;
     let Run { workspace, lambda, .. } = run;
-    workspace.factored_at.clone_from(&state.q);
+    workspace.note_factored(state);
     frame.report.factorizations = workspace.equation.solver.factorizations - factorizations;
     Ok(frame.finish(state, Some((lambda, &workspace.equation))))
 }
@@ -108,17 +108,17 @@ impl<const D: usize> Method for Run<'_, D> {
 
     fn longest(&mut self, state: &State) -> f64 {
         let Workspace { equation, rattle: Scratch { rowsum, damping, .. }, .. } = &mut *self.workspace;
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         control::longest_substep(self.system, equation, &self.lambda, motion, rowsum, damping)
     }
 
-    fn attempt(&mut self, state: &State, h: f64) -> Outcome {
+    fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
         let Run { system, settings, workspace, lambda } = self;
-        let Some((error, iterations)) = substep::<D>(system, state, settings, h, lambda, workspace) else {
+        let Some((error, iterations)) = substep::<D>(system, state, settings, h, end, lambda, workspace) else {
             return Outcome::NotMet;
         };
-        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
-        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
+        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
         Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
     }
 
@@ -128,7 +128,7 @@ impl<const D: usize> Method for Run<'_, D> {
         }
         std::mem::swap(&mut state.q, &mut self.workspace.q);
         std::mem::swap(&mut state.qd, &mut self.workspace.qd);
-        measure::drift(self.system, &self.workspace.equation.rows, Motion::<D> { q: &state.q, qd: &state.qd })
+        measure::drift::<D>(self.system, &self.workspace.equation.rows, &state.q)
     }
 
     fn turn_back(&mut self, state: &State) {
@@ -143,13 +143,14 @@ impl<const D: usize> Method for Run<'_, D> {
     }
 }
 
-/// Tries one substep from `state` into the workspace: the error estimate relative to the extent of the system and the
+/// Tries one substep from `state` to the time `end` into the workspace: the error estimate relative to the extent of the system and the
 /// number of Newton iterations, or `None` if the constraints were not met.
 fn substep<const D: usize>(
     system: &System,
     state: &State,
     settings: &Settings,
     h: f64,
+    end: f64,
     lambda: &[f64],
     workspace: &mut Workspace,
 ) -> Option<(f64, usize)> {
@@ -173,7 +174,7 @@ fn substep<const D: usize>(
     let mut last = f64::INFINITY;
     let mut iterations = 0;
     loop {
-        equation.constrain(system, Motion::<D> { q, qd });
+        equation.constrain(system, Motion::<D> { q, qd, t: end });
         let off = worst_row(system, &equation.rows.C).1;
         if iterations > 0 && off <= attainable(system, settings, largest(q)) {
             break;
@@ -198,11 +199,11 @@ fn substep<const D: usize>(
 
     // Forces at q' with the velocity they lead to, the second half of the constraint's push included: second order also
     // where they depend on it.
-    equation.apply_forces(system, Motion::<D> { q, qd });
+    equation.apply_forces(system, Motion::<D> { q, qd, t: end });
     for k in 0..qd.len() {
         scratch.kick[k] = qd[k] + 0.5 * h * equation.WQ[k] + scratch.push[k] / h;
     }
-    equation.apply_forces(system, Motion::<D> { q, qd: &scratch.kick });
+    equation.apply_forces(system, Motion::<D> { q, qd: &scratch.kick, t: end });
     for k in 0..qd.len() {
         qd[k] += 0.5 * h * equation.WQ[k];
     }
@@ -219,7 +220,7 @@ fn substep<const D: usize>(
     for k in 0..qd.len() {
         qd[k] += scratch.kick[k];
     }
-    equation.constrain(system, Motion::<D> { q, qd });
+    equation.constrain(system, Motion::<D> { q, qd, t: end });
 
     // ½h² (q̈ of the velocity stage − q̈ of the position stage), particle by particle.
     let mut error = 0.0_f64;

@@ -54,7 +54,7 @@ pub(super) struct Scratch {
 impl Scratch {
     fn new(system: &System) -> Self {
         let zeros = || vec![0.0; system.coordinate_count()];
-        Scratch { newton: Newton::new(system), base: Base { q: zeros(), qd: zeros(), h_e: 0.0 } }
+        Scratch { newton: Newton::new(system), base: Base { q: zeros(), qd: zeros(), h_e: 0.0, end: 0.0 } }
     }
 }
 
@@ -97,6 +97,7 @@ fn substeps<const D: usize>(
     let (mut done, mut parts) = (0, PARTS);
     while done < PARTS {
         let h = frame * (f64::from(parts) / f64::from(PARTS));
+        scratch.base.end = start + frame * (f64::from(done + parts) / f64::from(PARTS));
         let left = settings.frame_budget - report.iterations.min(settings.frame_budget);
         let ending = attempt::<D>(formula, system, state, settings, h, left, workspace, scratch);
         report.iterations += ending.iterations;
@@ -125,9 +126,8 @@ fn substeps<const D: usize>(
         report.substeps += 1;
         report.smallest_substep = report.smallest_substep.min(h);
         done += parts;
-        state.t = start + frame * (f64::from(done) / f64::from(PARTS));
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        let drift = measure::drift(system, &workspace.equation.rows, motion);
+        state.t = scratch.base.end;
+        let drift = measure::drift::<D>(system, &workspace.equation.rows, &state.q);
         report.max_residual = report.max_residual.max(drift.residual);
         report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
         report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
@@ -200,8 +200,8 @@ fn keep<const D: usize>(
     workspace: &mut Workspace,
     scratch: &Scratch,
 ) {
-    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
+    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: scratch.base.end });
+    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
     // The end point's rule is backward Euler's own; the trapezoidal rule is of second order.
     state.work.dissipation += h * if formula.second.is_some() { 0.5 * (before + after) } else { after };
     std::mem::swap(&mut state.q, &mut workspace.q);

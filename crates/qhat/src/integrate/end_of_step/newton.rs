@@ -38,6 +38,8 @@ pub(in crate::integrate) struct Base {
     pub(in crate::integrate) qd: Vec<f64>,
     /// h_e [s].
     pub(in crate::integrate) h_e: f64,
+    /// t at the end of the step [s], where everything is evaluated.
+    pub(in crate::integrate) end: f64,
 }
 
 /// Arrays of the iteration.
@@ -153,7 +155,7 @@ impl Newton {
     }
 
     fn factor<const D: usize>(&mut self, system: &System, aim: &Aim<'_>, tried: &Tried<'_>) -> bool {
-        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: aim.base.end };
         self.matrix.factor(system, &tried.equation.rows, motion, &self.mu, aim.base.h_e)
     }
 
@@ -177,7 +179,7 @@ impl Newton {
         for (v, (x, from)) in tried.qd.iter_mut().zip(tried.q.iter().zip(&base.q)) {
             *v = (x - from) / h_e;
         }
-        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: base.end };
         tried.equation.constrain(system, motion);
         system.add_applied_forces(motion, &mut tried.equation.Q);
         let (rows, Q) = (&tried.equation.rows, &tried.equation.Q);
@@ -276,7 +278,8 @@ impl Newton {
                 break;
             }
             if !is_factored {
-                is_factored = self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd }, &self.mu, base.h_e);
+                is_factored =
+                    self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd, t: base.end }, &self.mu, base.h_e);
             }
             if !is_factored {
                 break;
@@ -288,7 +291,7 @@ impl Newton {
                 }
             }
         }
-        equation.constrain(system, Motion::<D> { q, qd });
+        equation.constrain(system, Motion::<D> { q, qd, t: base.end });
     }
 }
 

@@ -76,7 +76,7 @@ fn solve_dense(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 /// h_e² Q + Jᵀ μ at q, with q̇ = q/h_e.
 fn pull(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
-    let motion = Motion::<D> { q, qd: &qd };
+    let motion = Motion::<D> { q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let mut sum = vec![0.0; q.len()];
@@ -94,7 +94,7 @@ fn check(what: &str, system: &System, q: &[f64]) {
     // In tension, the more the farther down the list: K is positive then, and nothing needs mending.
     let mu: Vec<f64> = (0..m).map(|row| -0.02 * (1.0 + row as f64)).collect();
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
-    let motion = Motion::<D> { q, qd: &qd };
+    let motion = Motion::<D> { q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
 
@@ -200,7 +200,7 @@ fn a_net_is_factored_in_blocks() {
 fn a_compressed_chain_is_mended() {
     let (system, q) = system(&TREE, |_| {});
     let qd = vec![0.0; q.len()];
-    let motion = Motion::<D> { q: &q, qd: &qd };
+    let motion = Motion::<D> { q: &q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let mu = vec![5.0; system.row_count()];
