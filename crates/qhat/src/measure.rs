@@ -56,6 +56,19 @@ pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>
     system.all_forces().map(|force| force.power(motion)).sum()
 }
 
+/// −λᵀ C_t over the rows that are held [W], the power of what moves them: the constraint force has Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
+/// Ċ = 0 on legal motion.
+pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
+    let mut power = 0.0;
+    for (row, &Ct) in Ct.iter().enumerate() {
+        // What gives way is a force; its λ is told, but does no work of its own.
+        if Ct != 0.0 && system.softness[row].is_rigid() {
+            power -= lambda[row] * Ct;
+        }
+    }
+    power
+}
+
 /// The work the applied forces could do over the length of the system [J]: a scale for energies that has no zero point.
 pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
     let mut Q = vec![0.0; system.coordinate_count()];

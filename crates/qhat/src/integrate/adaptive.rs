@@ -84,6 +84,8 @@ pub(super) struct Attempt {
     pub(super) iterations: usize,
     /// Work of forces without a potential [J].
     pub(super) dissipation: f64,
+    /// Work of the drives [J].
+    pub(super) drives: f64,
 }
 
 /// One frame: how far it has come, and what there is to report.
@@ -151,6 +153,7 @@ impl<'a> Frame<'a> {
             self.proposed = h * growth.unwrap_or(1.0);
             let drift = method.keep(state, h);
             state.work.dissipation += attempt.dissipation;
+            state.work.drives += attempt.drives;
             (self.done, state.t) = (done, end);
             let report = &mut self.report;
             report.substeps += 1;
@@ -207,16 +210,17 @@ impl<'a> Frame<'a> {
     /// What a frame leaves: the report, and in the state what the next one goes on from. `general` is λ and the equation, where
     /// the frame ended on the general path.
     pub(super) fn finish(mut self, state: &mut State, general: Option<(Vec<f64>, &Equation)>) -> StepReport {
-        let (lambda, deficient) = match general {
+        let (lambda, drives, deficient) = match general {
             Some((lambda, equation)) => {
                 for warning in equation.warnings(self.system) {
                     self.report.warn(warning);
                 }
-                (lambda, equation.solver.deficient)
+                let drives = measure::drive_power(self.system, &equation.rows.Ct, &lambda);
+                (lambda, drives, equation.solver.deficient)
             }
-            None => (Vec::new(), false),
+            None => (Vec::new(), 0.0, false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, resting: 0 });
+        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, drives, resting: 0 });
         self.report.energy = measure::energy(self.system, state);
         self.report
     }

@@ -21,6 +21,7 @@ const MAX_ITERATIONS: usize = 8;
 pub(super) struct Power {
     pub(super) dissipation: f64,
     pub(super) stabilization: f64,
+    pub(super) drives: f64,
 }
 
 /// q̈(q, q̇, t) in an order of its own.
@@ -95,7 +96,12 @@ impl<const D: usize> Field for Rows<'_, D> {
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
-        Some(Power { dissipation: measure::dissipation(self.system, motion), stabilization: constraint_power.sum() })
+        let drives = equation.drive_power(self.system, &self.feedback);
+        Some(Power {
+            dissipation: measure::dissipation(self.system, motion),
+            stabilization: constraint_power.sum::<f64>() - drives,
+            drives,
+        })
     }
 
     fn project(&mut self, q: &mut [F8], qd: &mut [F8], t: f64, settings: &Settings) -> Projected {
@@ -108,7 +114,7 @@ impl<const D: usize> Field for Rows<'_, D> {
             let off = worst_row(system, &equation.rows.C).1;
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
-                equation.rows.J.multiply::<D>(flat_qd, &mut equation.b.sum);
+                equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
                 equation.solver.solve(matrix, &equation.b.sum, Multipliers::Correction, delta);
                 add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
                 equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
@@ -161,7 +167,7 @@ impl<const D: usize> Field for Chains<'_, D> {
 
     fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power> {
         let dissipation = self.lanes.accelerate::<D>(self.system, self.plan, q, qd, t, qdd)?;
-        Some(Power { dissipation, stabilization: 0.0 })
+        Some(Power { dissipation, ..Power::default() })
     }
 
     fn project(&mut self, q: &mut [F8], qd: &mut [F8], _: f64, settings: &Settings) -> Projected {

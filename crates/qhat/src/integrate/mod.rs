@@ -158,6 +158,7 @@ pub fn project(
 struct StepWork {
     dissipation: f64,
     stabilization: f64,
+    drives: f64,
 }
 
 type FixedStep = fn(&System, &State, f64, &mut Workspace) -> StepWork;
@@ -180,6 +181,7 @@ fn fixed<const D: usize>(
     state.t += h;
     state.work.dissipation += work.dissipation;
     state.work.stabilization += work.stabilization;
+    state.work.drives += work.drives;
     state.carry = None;
     Ok(StepReport {
         substeps: 1,

@@ -148,7 +148,7 @@ impl<F: Field> Method for Run<'_, F> {
         if error.is_nan() && self.stages.overflow() {
             return Outcome::NotMet;
         }
-        let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation };
+        let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation, drives: work.drives };
         if error > MISSED * self.settings.tolerance || error.is_nan() {
             return Outcome::Met(attempt);
         }

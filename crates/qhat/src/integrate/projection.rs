@@ -1,8 +1,8 @@
-//! Projection onto C(q) = 0 and Ċ = 0, in the mass metric.
+//! Projection onto C(q, t) = 0 and Ċ = 0, in the mass metric.
 //!
 //! ```text
 //! q ← q − W Jᵀ A⁻¹ C,  repeated until every |C| is within tolerance
-//! q̇ ← q̇ − W Jᵀ A⁻¹ (J q̇)
+//! q̇ ← q̇ − W Jᵀ A⁻¹ Ċ,  Ċ = J q̇ + C_t
 //! ```
 //!
 //! Newton's method with the step halved while it does not bring the constraints nearer. Fails where no q satisfies them, or

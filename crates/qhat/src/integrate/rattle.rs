@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! q̇½ = q̇ + ½h W Q(q, q̇)
-//! q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q') = 0
+//! q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q', t + h) = 0
 //! q̇* = q̇½ + W J(q)ᵀ μ/h
-//! q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' = 0
+//! q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' + C_t = 0
 //! ```
 //!
 //! μ = ½h² λ(t + h/3) and ν = ½h λ(t + 2h/3) to second order. Both are solved with A = J W Jᵀ: μ by Newton's method with A(q)
@@ -46,6 +46,8 @@ pub(super) struct Scratch {
     delta: Vec<f64>,
     /// W Q at the start.
     WQ: Vec<f64>,
+    /// C_t at the start.
+    Ct: Vec<f64>,
     /// W J(q)ᵀ μ and W J(q')ᵀ ν.
     push: Vec<f64>,
     kick: Vec<f64>,
@@ -62,6 +64,7 @@ impl Scratch {
             nu: vec![0.0; m],
             delta: vec![0.0; m],
             WQ: vec![0.0; coordinates],
+            Ct: vec![0.0; m],
             push: vec![0.0; coordinates],
             kick: vec![0.0; coordinates],
             rowsum: vec![0.0; n],
@@ -119,7 +122,10 @@ impl<const D: usize> Method for Run<'_, D> {
         };
         let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
         let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
-        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
+        // μ/h is the impulse where the substep begins, ν where it ends.
+        let Workspace { equation, rattle: Scratch { mu, nu, Ct, .. }, .. } = &**workspace;
+        let drives = measure::drive_power(system, Ct, mu) / h + measure::drive_power(system, &equation.rows.Ct, nu);
+        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after), drives })
     }
 
     fn keep(&mut self, state: &mut State, h: f64) -> Drift {
@@ -159,6 +165,7 @@ fn substep<const D: usize>(
     let matrix = &system.matrix;
     scratch.J.blocks.copy_from_slice(&equation.rows.J.blocks);
     scratch.WQ.copy_from_slice(&equation.WQ);
+    scratch.Ct.copy_from_slice(&equation.rows.Ct);
 
     // q̇½, and q' from the multipliers of the last substep.
     for (mu, multiplier) in scratch.mu.iter_mut().zip(lambda) {
@@ -210,7 +217,7 @@ fn substep<const D: usize>(
 
     // ν in one solve, with the factor at q'.
     equation.factor::<D>(system, 0.0);
-    equation.rows.J.multiply::<D>(qd, &mut scratch.delta);
+    equation.rows.rates::<D>(qd, &mut scratch.delta);
     equation.solver.solve(matrix, &scratch.delta, Multipliers::Force, &mut scratch.nu);
     for nu in &mut scratch.nu {
         *nu = -*nu;

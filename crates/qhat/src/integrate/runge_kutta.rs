@@ -177,10 +177,11 @@ pub(super) fn advance<F: Field>(
         power[i] = field.accelerate(stage_q, stage_qd, t + weights.c * h, &mut rest[0])?;
     }
     Combine { weights: &tableau.end, h, q, qd, slope, first: 0, out_q: next_q, out_qd: next_qd }.write();
-    let mut work = StepWork { dissipation: 0.0, stabilization: 0.0 };
+    let mut work = StepWork::default();
     for (weight, power) in tableau.end.velocity.iter().zip(power).take(tableau.stages) {
         work.dissipation += weight * h * power.dissipation;
         work.stabilization += weight * h * power.stabilization;
+        work.drives += weight * h * power.drives;
     }
     Some(work)
 }

@@ -73,7 +73,8 @@ pub(super) fn frame<const D: usize>(
         // λ of the equation is the best first guess.
         let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
-        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None, resting: 0 });
+        let drives = measure::drive_power(system, &equation.rows.Ct, &lambda);
+        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None, drives, resting: 0 });
     }
     workspace.factored_at.clear();
     scratch.newton.matrix.factorizations = workspace.equation.solver.factorizations - before;
@@ -203,7 +204,8 @@ fn keep<const D: usize>(
     let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: scratch.base.end });
     let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
     // The end point's rule is backward Euler's own; the trapezoidal rule is of second order.
-    state.work.dissipation += h * if formula.second.is_some() { 0.5 * (before + after) } else { after };
+    let mean = |before: f64, after: f64| if formula.second.is_some() { 0.5 * (before + after) } else { after };
+    state.work.dissipation += h * mean(before, after);
     std::mem::swap(&mut state.q, &mut workspace.q);
     std::mem::swap(&mut state.qd, &mut workspace.qd);
     if let Some(carry) = &mut state.carry {
@@ -211,6 +213,9 @@ fn keep<const D: usize>(
         for (multiplier, mu) in carry.lambda.iter_mut().zip(&scratch.newton.mu) {
             *multiplier = mu / scale;
         }
+        let drives = measure::drive_power(system, &workspace.equation.rows.Ct, &carry.lambda);
+        state.work.drives += h * mean(carry.drives, drives);
+        carry.drives = drives;
         carry.substep = h;
         let previous = carry.previous.get_or_insert_with(|| Previous { q: Vec::new(), qd: Vec::new(), h });
         previous.q.clone_from(&workspace.q);

@@ -3,7 +3,7 @@
 //! ```text
 //! q̇ = (q − q*)/h_e                                        q*, q̇* and h_e say which method it is
 //! M (q − q* − h_e q̇*) − h_e² Q(q, q̇) − Jᵀ μ = 0           μ = h_e² λ
-//! C + α λ + α c Ċ = 0                                      α = 0 for a rigid row
+//! C + α λ + α c Ċ = 0                                      α = 0 for a rigid row; C, J and Q at t + h
 //! ```
 //!
 //! The factor of an iteration is kept for the next where the speed at which the residual fell says that it will do: the last
@@ -270,7 +270,7 @@ impl Newton {
                 let takes_part = !self.matrix.graph.idle[row] && system.softness[row].is_rigid();
                 let entries = system.layout.start[row]..system.layout.start[row + 1];
                 let terms = entries.map(|e| dot(equation.rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
-                let rate: f64 = terms.sum();
+                let rate = terms.sum::<f64>() + equation.rows.Ct[row];
                 self.s[row] = if takes_part { -rate } else { 0.0 };
                 worst = worst.max(self.s[row].abs() * self.per_scale[row]);
             }
