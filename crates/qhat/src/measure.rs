@@ -5,7 +5,7 @@
 //! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
 //! ```
 
-use crate::constraint::{Constraint, Rows};
+use crate::constraint::Rows;
 use crate::force::Acts;
 use crate::point::{Motion, block, dot, minus, norm};
 use crate::state::{State, Work};
@@ -106,7 +106,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, q: &[f64]) -> 
         }
     }
     for named in &system.constraints {
-        if let Constraint::Distance(rod) = &named.constraint
+        if let Some(rod) = named.constraint.as_rod()
             && rod.compliance == 0.0
         {
             let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));

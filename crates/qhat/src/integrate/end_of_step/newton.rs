@@ -197,9 +197,9 @@ impl Newton {
         }
         for force in &system.forces {
             force.stiffness(motion, &mut |id, stiffness, damping| {
-                let place = matrix.graph.place(&[id]);
-                if place.a != NONE {
-                    rounding[place.a] += h_e * (h_e * stiffness + damping) * farthest;
+                let node = matrix.graph.node(id);
+                if node != NONE {
+                    rounding[node] += h_e * (h_e * stiffness + damping) * farthest;
                 }
             });
         }
