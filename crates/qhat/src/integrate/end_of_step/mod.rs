@@ -121,9 +121,9 @@ fn substeps<const D: usize>(
         }
         let Workspace { equation, q, qd, .. } = &mut *workspace;
         let mut tried = Tried { equation, q, qd };
-        scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, &mut tried);
+        let kick = scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, &mut tried);
         check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
-        keep::<D>(formula, system, state, h, workspace, scratch);
+        keep::<D>(formula, system, state, h, kick, workspace, scratch);
         report.substeps += 1;
         report.smallest_substep = report.smallest_substep.min(h);
         done += parts;
@@ -192,12 +192,14 @@ fn solve<const D: usize>(
     newton.solve::<D>(system, settings, base, limit, &mut Tried { equation, q, qd })
 }
 
-/// Makes the step in the workspace the state, and what a restart needs its carry.
+/// Makes the step in the workspace the state, and what a restart needs its carry. `kick` is the work of the drives in the
+/// projection of velocities [J].
 fn keep<const D: usize>(
     formula: &Formula,
     system: &System,
     state: &mut State,
     h: f64,
+    kick: f64,
     workspace: &mut Workspace,
     scratch: &Scratch,
 ) {
@@ -213,7 +215,9 @@ fn keep<const D: usize>(
         for (multiplier, mu) in carry.lambda.iter_mut().zip(&scratch.newton.mu) {
             *multiplier = mu / scale;
         }
-        let drives = measure::drive_power(system, &workspace.equation.rows.Ct, &carry.lambda);
+        // λ brings q onto C = 0, and the projection adds what the velocity needs: only both together are the force.
+        let power = measure::drive_power(system, &workspace.equation.rows.Ct, &carry.lambda);
+        let drives = power + kick / scratch.base.h_e;
         state.work.drives += h * mean(carry.drives, drives);
         carry.drives = drives;
         carry.substep = h;

@@ -17,6 +17,7 @@ use super::matrix::Matrix;
 use crate::force::Acts;
 use crate::integrate::projection::{attainable, largest};
 use crate::linalg::NONE;
+use crate::measure;
 use crate::multiplier::Equation;
 use crate::point::{Motion, block, dot, norm};
 use crate::settings::Settings;
@@ -249,20 +250,21 @@ impl Newton {
 
     /// Takes out of q̇ what violates Ċ = 0, in the metric of the step's own matrix M + h_e² K: its factor is at hand, and what
     /// hangs on a tight rod is not kicked sideways as it would be in the metric of M. `is_factored` says whether this step made
-    /// one.
+    /// one. Returns the work of the drives in it [J].
     pub(super) fn project_velocities<const D: usize>(
         &mut self,
         system: &System,
         base: &Base,
         mut is_factored: bool,
         tried: &mut Tried<'_>,
-    ) {
+    ) -> f64 {
         let Tried { equation, q, qd } = tried;
         /// The factor belongs to a q next door: each pass gains as many digits as J has in common there, four or more.
         const PASSES: usize = 4;
         /// A rate below this part of the fastest particle's speed over the extent is roundoff.
         const CONSISTENT: f64 = 1e-13;
         let fastest = qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let mut drives = 0.0;
         for _ in 0..PASSES {
             self.r.fill(0.0);
             let mut worst = 0.0_f64;
@@ -285,6 +287,8 @@ impl Newton {
                 break;
             }
             self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
+            // s is the impulse turned round.
+            drives -= measure::drive_power(system, &equation.rows.Ct, &self.s);
             for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
                 for (v, change) in qd[id.0 * D..][..D].iter_mut().zip(change) {
                     *v += change;
@@ -292,6 +296,7 @@ impl Newton {
             }
         }
         equation.constrain(system, Motion::<D> { q, qd, t: base.end });
+        drives
     }
 }
 
