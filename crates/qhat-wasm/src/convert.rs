@@ -182,9 +182,15 @@ pub(crate) fn set_controls(simulation: &mut Simulation, wanted: &JsValue) -> Res
 
 /// Which forms the constraints have: all of one formulation, or mixed.
 fn formulation(system: &System) -> &'static str {
-    let classic = system.constraints().iter().map(|named| match &named.constraint {
-        Constraint::Distance(distance) => distance.form == DistanceForm::Squared,
-        Constraint::Nail(nail) => nail.form == NailForm::Scalar,
+    // What has but one form belongs to either.
+    let classic = system.constraints().iter().filter_map(|named| {
+        if let Constraint::Distance(distance) = &named.constraint {
+            Some(distance.form == DistanceForm::Squared)
+        } else if let Constraint::Nail(nail) = &named.constraint {
+            Some(nail.form == NailForm::Scalar)
+        } else {
+            None
+        }
     });
     let (mut any, mut all) = (false, true);
     for is_classic in classic {

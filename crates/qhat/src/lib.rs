@@ -50,6 +50,7 @@ mod settings;
 mod simulation;
 mod softness;
 mod state;
+mod stiffness;
 mod system;
 mod terms;
 mod threads;

@@ -5,7 +5,7 @@
 //! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
 //! ```
 
-use crate::constraint::{Constraint, Rows};
+use crate::constraint::Rows;
 use crate::force::Acts;
 use crate::point::{Motion, block, dot, minus, norm};
 use crate::state::{State, Work};
@@ -37,7 +37,7 @@ impl Energy {
 /// The energy account of a state.
 pub(crate) fn energy(system: &System, state: &State) -> Energy {
     in_dimension!(system.dimension, D => {
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
     })
 }
@@ -56,11 +56,24 @@ pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>
     system.all_forces().map(|force| force.power(motion)).sum()
 }
 
+/// −λᵀ C_t over the rows that are held [W], the power of what moves them: the constraint force has Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
+/// Ċ = 0 on legal motion.
+pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
+    let mut power = 0.0;
+    for (row, &Ct) in Ct.iter().enumerate() {
+        // What gives way is a force; its λ is told, but does no work of its own.
+        if Ct != 0.0 && system.softness[row].is_rigid() {
+            power -= lambda[row] * Ct;
+        }
+    }
+    power
+}
+
 /// The work the applied forces could do over the length of the system [J]: a scale for energies that has no zero point.
 pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
     let mut Q = vec![0.0; system.coordinate_count()];
     in_dimension!(system.dimension, D => {
-        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd }, &mut Q);
+        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &mut Q);
         let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
         system.extent * moving.map(|i| norm(block::<D>(&Q, i))).sum::<f64>()
     })
@@ -80,8 +93,8 @@ pub(crate) struct Drift {
     pub(crate) relative_length: f64,
 }
 
-/// Reads the drift off evaluated rows.
-pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion<'_, D>) -> Drift {
+/// Reads the drift off rows that were evaluated at q.
+pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, q: &[f64]) -> Drift {
     let mut drift = Drift::default();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
     for row in (0..rows.C.len()).filter(rigid) {
@@ -93,10 +106,10 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, motion: Motion
         }
     }
     for named in &system.constraints {
-        if let Constraint::Distance(rod) = &named.constraint
+        if let Some(rod) = named.constraint.as_rod()
             && rod.compliance == 0.0
         {
-            let length = norm(minus(motion.x(rod.a), motion.x(rod.b)));
+            let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));
             drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
         }
     }

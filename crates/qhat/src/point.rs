@@ -39,11 +39,14 @@ pub(crate) fn first<const D: usize>(a: &[f64; 3]) -> Point<D> {
     std::array::from_fn(|k| a[k])
 }
 
-/// Where every particle is and how it moves: q and q̇, flat, d·n each.
+/// Where every particle is and how it moves: q and q̇, flat, d·n each, at the time t.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion<'a, const D: usize> {
     pub(crate) q: &'a [f64],
     pub(crate) qd: &'a [f64],
+    /// t [s], for what depends on it explicitly.
+    #[expect(dead_code, reason = "the first kind that depends on time will read it")]
+    pub(crate) t: f64,
 }
 
 impl<const D: usize> Motion<'_, D> {

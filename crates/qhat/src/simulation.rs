@@ -325,7 +325,7 @@ impl Simulation {
     fn change_forces(&mut self, change: impl FnOnce(&mut Vec<Force>)) {
         let potential = |system: &System, state: &State| {
             in_dimension!(system.dimension, D => {
-                measure::potential(system, Motion::<D> { q: &state.q, qd: &state.qd })
+                measure::potential(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t })
             })
         };
         let before = potential(&self.system, &self.state);

@@ -19,12 +19,14 @@ pub struct Work {
     pub stabilization: f64,
     /// Of the hand that moves the mouse spring, and of changes made to the forces while running.
     pub external: f64,
+    /// Of constraints that move with time: motors, cranks.
+    pub drives: f64,
 }
 
 impl Work {
     /// All of it [J].
     pub fn total(&self) -> f64 {
-        self.dissipation + self.stabilization + self.external
+        self.dissipation + self.stabilization + self.external + self.drives
     }
 }
 
@@ -39,6 +41,8 @@ pub(crate) struct Carry {
     pub(crate) deficient: bool,
     /// Where the last step began, for a method that looks back.
     pub(crate) previous: Option<Previous>,
+    /// Power of the drives where the last step ended [W], for a rule that looks back.
+    pub(crate) drives: f64,
     /// Frames for which auto stays with a method that solves at the end of the step.
     pub(crate) resting: u32,
 }

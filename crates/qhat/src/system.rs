@@ -1,7 +1,7 @@
 //! System: which particles, constraints and forces there are. What is connected to what never changes once it is built;
 //! the numbers of forces and feedback may.
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Rows, Softness};
+use crate::constraint::{Constraint, Distance, Formulation, Holds, Layout, Rows, Softness};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
 use crate::lanes::Plan;
@@ -210,15 +210,10 @@ impl System {
 
     /// The distance constraints, in the order they were added: `tension` has one number for each.
     pub fn rods(&self) -> impl Iterator<Item = Rod<'_>> {
-        self.constraints.iter().filter_map(|named| match &named.constraint {
-            Constraint::Distance(distance) => Some(Rod {
-                name: &named.name,
-                a: distance.a,
-                b: distance.b,
-                length: distance.length,
-                row: named.first_row,
-            }),
-            Constraint::Nail(_) => None,
+        self.constraints.iter().filter_map(|named| {
+            let distance = named.constraint.as_rod()?;
+            let Distance { a, b, length, .. } = *distance;
+            Some(Rod { name: &named.name, a, b, length, row: named.first_row })
         })
     }
 
@@ -334,7 +329,7 @@ impl System {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
                 1 => self.row_names.push(name.clone()),
-                rows if rows == dimension => {
+                rows if constraint.is_vector() => {
                     self.row_names.extend(["x", "y", "z"][..rows].iter().map(|axis| format!("{name}.{axis}")));
                 }
                 rows => self.row_names.extend((0..rows).map(|k| format!("{name}[{k}]"))),
@@ -464,10 +459,7 @@ impl SystemBuilder {
 
 /// The mean rod length, else the diagonal of the box around all particles, else 1 [m].
 fn extent<const D: usize>(constraints: &[(String, Constraint)], q: &[f64]) -> f64 {
-    let lengths = constraints.iter().filter_map(|(_, constraint)| match constraint {
-        Constraint::Distance(distance) => Some(distance.length),
-        Constraint::Nail(_) => None,
-    });
+    let lengths = constraints.iter().filter_map(|(_, constraint)| Some(constraint.as_rod()?.length));
     let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
     if count > 0.0 {
         return sum / count;

@@ -1,6 +1,6 @@
 //! Terms: every symbol of one evaluation of the equation, in the order in which they are computed. The glass box.
 
-use crate::constraint::{Constraint, Distance, Jacobian};
+use crate::constraint::{Distance, Jacobian};
 use crate::integrate::Workspace;
 use crate::linalg::SymmetricMatrix;
 use crate::multiplier::Equation;
@@ -137,7 +137,7 @@ impl Workspace {
     pub(crate) fn tension(&mut self, system: &System, state: &State, feedback: &Feedback) -> Vec<f64> {
         in_dimension!(system.dimension, D => {
             let equation = self.solve::<D>(system, state, feedback);
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
             tension(system, motion, &equation.lambda, 1.0 - feedback.elasticity)
         })
     }
@@ -175,10 +175,8 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
 
 /// Signed tension of every rod [N] for given multipliers, as applied: s λ, or λ for a rod that gives way.
 fn tension<const D: usize>(system: &System, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> Vec<f64> {
-    let rods = system.constraints.iter().filter_map(|named| match &named.constraint {
-        Constraint::Distance(rod) => Some((rod, lambda[named.first_row])),
-        Constraint::Nail(_) => None,
-    });
+    let rods =
+        system.constraints.iter().filter_map(|named| Some((named.constraint.as_rod()?, lambda[named.first_row])));
     let applied = |rod: &Distance| if rod.compliance > 0.0 { 1.0 } else { s };
     rods.map(|(rod, multiplier)| rod.tension(motion, applied(rod) * multiplier)).collect()
 }

@@ -7,7 +7,7 @@ use qhat::{Integrator, Settings, Simulation, State, System, Workspace, evaluate,
 
 fn bits(state: &State) -> Vec<u64> {
     let work = state.work();
-    let numbers = [state.time(), work.dissipation, work.stabilization, work.external];
+    let numbers = [state.time(), work.dissipation, work.stabilization, work.external, work.drives];
     state.positions().iter().chain(state.velocities()).chain(&numbers).map(|x| x.to_bits()).collect()
 }
 

@@ -35,8 +35,9 @@
 
 use super::{Formulation, Holds, RowWriter, Softness};
 use crate::force::{Force, Spring, not_negative};
-use crate::linalg::block::{Block, diagonal, outer, plus};
+use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, minus, norm, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Which function of the distance is held at zero.
@@ -144,17 +145,29 @@ impl Holds for Distance {
         }
     }
 
-    fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+    #[inline(always)]
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    ) {
         match self.form {
             DistanceForm::Length => {
                 let d = minus(motion.x(self.a), motion.x(self.b));
                 let length = norm(d);
-                let n = scaled(1.0 / length, d);
-                let stiffness = -lambda[0] / length;
-                (length > 0.0).then(|| plus(diagonal(stiffness), -stiffness, outer(1.0, n, n)))
+                if length > 0.0 {
+                    let n = scaled(1.0 / length, d);
+                    let stiffness = -lambda[0] / length;
+                    visit(0, 1, Stiffness::Difference(plus(diagonal(stiffness), -stiffness, outer(1.0, n, n))));
+                }
             }
-            DistanceForm::Squared => Some(diagonal(-2.0 * lambda[0])),
+            DistanceForm::Squared => visit(0, 1, Stiffness::Difference(diagonal(-2.0 * lambda[0]))),
         }
+    }
+
+    fn pulls_on_each(&self) -> bool {
+        true
     }
 
     fn formulated(&self, formulation: Formulation) -> Self {

@@ -1,6 +1,6 @@
-//! Constraints C(q) = 0, one kind a file, and the rows they make together.
+//! Constraints C(q, t) = 0, one kind a file, and the rows they make together.
 //!
-//! To add a kind: write one file here that derives C, Ċ, J, γ and ∂²C/∂q² in its head and implements `Holds`, and name it in the
+//! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
 mod distance;
@@ -13,8 +13,8 @@ pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
 
 use crate::force::Force;
-use crate::linalg::block::Block;
 use crate::point::Motion;
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// What every constraint answers. [C] is the unit of its residual.
@@ -22,10 +22,15 @@ pub(crate) trait Holds {
     /// Number of scalar rows in d dimensions.
     fn row_count(&self, dimension: usize) -> usize;
 
-    /// The particles its rows touch, in the order of the blocks that `evaluate` writes.
+    /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
+    fn is_vector(&self) -> bool {
+        false
+    }
+
+    /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// Writes C, Ċ, γ and the blocks of J, one row after the other.
+    /// Writes C, Ċ, γ, C_t and the blocks of J, one row after the other.
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>);
 
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
@@ -44,9 +49,20 @@ pub(crate) trait Holds {
     /// A bound on the norm of one block of ∂²C/∂q² [C/m²]: times |λ| it is geometric stiffness.
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
-    /// Geometric stiffness −Σ λ ∂²C/∂q² for the multipliers of its rows [N/m]: the block that stands on the diagonal of each
-    /// of its particles and, with the sign turned, between two of them; semidefinite of either sign. `None` where it is zero.
-    fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>>;
+    /// Calls `visit(i, j, block)`, i ≤ j counting its particles, with the geometric stiffness −Σ λ ∂²C/∂q² for the
+    /// multipliers of its rows [N/m]; not where it is zero.
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    );
+
+    /// Whether the gradient of a row vanishes on one of its particles only where it vanishes on all: then the row can be
+    /// eliminated together with any of them.
+    fn pulls_on_each(&self) -> bool {
+        false
+    }
 
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
@@ -99,6 +115,9 @@ macro_rules! constraints {
             fn row_count(&self, dimension: usize) -> usize {
                 match self { $(Constraint::$kind(constraint) => constraint.row_count(dimension),)* }
             }
+            fn is_vector(&self) -> bool {
+                match self { $(Constraint::$kind(constraint) => constraint.is_vector(),)* }
+            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Constraint::$kind(constraint) => constraint.particles(),)* }
             }
@@ -117,8 +136,17 @@ macro_rules! constraints {
             fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
                 match self { $(Constraint::$kind(constraint) => constraint.curvature(motion),)* }
             }
-            fn geometric_stiffness<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
-                match self { $(Constraint::$kind(constraint) => constraint.geometric_stiffness(motion, lambda),)* }
+            #[inline(always)]
+            fn geometric_stiffness<const D: usize>(
+                &self,
+                motion: Motion<'_, D>,
+                lambda: &[f64],
+                visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+            ) {
+                match self { $(Constraint::$kind(constraint) => constraint.geometric_stiffness(motion, lambda, visit),)* }
+            }
+            fn pulls_on_each(&self) -> bool {
+                match self { $(Constraint::$kind(constraint) => constraint.pulls_on_each(),)* }
             }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
@@ -128,6 +156,13 @@ macro_rules! constraints {
             }
         }
     };
+}
+
+impl Constraint {
+    /// What faces draw and report as a rod.
+    pub(crate) fn as_rod(&self) -> Option<&Distance> {
+        if let Constraint::Distance(rod) = self { Some(rod) } else { None }
+    }
 }
 
 constraints! {

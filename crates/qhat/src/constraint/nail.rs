@@ -16,8 +16,9 @@
 //! That is why the source needed its diagonal drag.
 
 use super::{Formulation, Holds, RowWriter};
-use crate::linalg::block::{Block, diagonal};
+use crate::linalg::block::diagonal;
 use crate::point::{Motion, dot, first, minus, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Which function of x − p is held at zero.
@@ -56,6 +57,10 @@ impl Holds for Nail {
         }
     }
 
+    fn is_vector(&self) -> bool {
+        self.form == NailForm::Vector
+    }
+
     fn particles(&self) -> Vec<ParticleId> {
         vec![self.particle]
     }
@@ -90,11 +95,20 @@ impl Holds for Nail {
         }
     }
 
-    fn geometric_stiffness<const D: usize>(&self, _: Motion<'_, D>, lambda: &[f64]) -> Option<Block<D>> {
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        _: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    ) {
         match self.form {
-            NailForm::Vector => None,
-            NailForm::Scalar => Some(diagonal(-2.0 * lambda[0])),
+            NailForm::Vector => {}
+            NailForm::Scalar => visit(0, 0, Stiffness::Difference(diagonal(-2.0 * lambda[0]))),
         }
+    }
+
+    fn pulls_on_each(&self) -> bool {
+        true
     }
 
     fn formulated(&self, formulation: Formulation) -> Self {

@@ -101,12 +101,14 @@ impl Jacobian {
     }
 }
 
-/// C, Ċ, γ and J at one motion.
+/// C, Ċ, γ, C_t and J at one motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     pub(crate) C: Vec<f64>,
     pub(crate) Cd: Vec<f64>,
     pub(crate) gamma: Vec<f64>,
+    /// ∂C/∂t [C/s]; zero where a constraint does not move with time.
+    pub(crate) Ct: Vec<f64>,
     pub(crate) J: Jacobian,
 }
 
@@ -117,6 +119,7 @@ impl Rows {
             C: vec![0.0; m],
             Cd: vec![0.0; m],
             gamma: vec![0.0; m],
+            Ct: vec![0.0; m],
             J: Jacobian::new(layout, dimension, particle_count),
         }
     }
@@ -132,6 +135,14 @@ impl Rows {
         }
         debug_assert_eq!(writer.row, self.C.len());
     }
+
+    /// out = J v + C_t, the Ċ of another velocity; v is d·n, out is m.
+    pub(crate) fn rates<const D: usize>(&self, v: &[f64], out: &mut [f64]) {
+        self.J.multiply::<D>(v, out);
+        for (rate, Ct) in out.iter_mut().zip(&self.Ct) {
+            *rate += Ct;
+        }
+    }
 }
 
 /// Where a constraint writes its rows, in the order of the layout.
@@ -142,16 +153,32 @@ pub(crate) struct RowWriter<'a, const D: usize> {
 }
 
 impl<const D: usize> RowWriter<'_, D> {
-    /// One row: C, Ċ, γ and its blocks of J, one for each particle that the constraint names.
+    /// One row that does not depend on time: C, Ċ, γ and its blocks of J, one for each particle that the constraint names.
     #[inline(always)]
     pub(crate) fn write<const K: usize>(&mut self, C: f64, Cd: f64, gamma: f64, blocks: [Point<D>; K]) {
+        self.write_driven(C, Cd, gamma, 0.0, blocks);
+    }
+
+    /// One row of C(q, t) = 0, with Ċ = J q̇ + C_t and γ = (∂(J q̇)/∂q) q̇ + 2 J_t q̇ + C_tt; the blocks of J may come from an
+    /// iterator.
+    #[inline(always)]
+    pub(crate) fn write_driven(
+        &mut self,
+        C: f64,
+        Cd: f64,
+        gamma: f64,
+        Ct: f64,
+        blocks: impl IntoIterator<Item = Point<D>>,
+    ) {
         self.rows.C[self.row] = C;
         self.rows.Cd[self.row] = Cd;
         self.rows.gamma[self.row] = gamma;
+        self.rows.Ct[self.row] = Ct;
         for numbers in blocks {
             self.rows.J.blocks[self.entry * D..][..D].copy_from_slice(&numbers);
             self.entry += 1;
         }
         self.row += 1;
+        debug_assert_eq!(self.entry, self.rows.J.layout.start[self.row], "a block for each particle");
     }
 }

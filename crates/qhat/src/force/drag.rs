@@ -5,9 +5,10 @@
 //! power = −kd Σ v_i · v_i        [W]
 //! ```
 
-use super::{Acts, Dependence, Tangent, not_negative};
-use crate::linalg::block::{diagonal, zero};
+use super::{Acts, Dependence, not_negative};
+use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Viscous drag on every particle.
@@ -49,12 +50,12 @@ impl Acts for Drag {
         &self,
         motion: Motion<'_, D>,
         rate: f64,
-        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
-        let definite = diagonal(rate * self.coefficient);
+        let stiffness = Stiffness::Difference(diagonal(rate * self.coefficient));
         if self.coefficient > 0.0 {
             for i in 0..motion.q.len() / D {
-                visit(&[ParticleId(i)], Tangent { definite, geometric: zero() });
+                visit(ParticleId(i), ParticleId(i), stiffness);
             }
         }
     }

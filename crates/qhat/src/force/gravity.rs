@@ -5,8 +5,9 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, Dependence, Tangent, finite};
+use super::{Acts, Dependence, finite};
 use crate::point::{Motion, add, dot, first, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Uniform gravity on every particle.
@@ -39,7 +40,13 @@ impl Acts for Gravity {
         Dependence::Nothing
     }
 
-    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
+    fn tangent<const D: usize>(
+        &self,
+        _: Motion<'_, D>,
+        _: f64,
+        _: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+    }
 
     fn particles(&self) -> Vec<ParticleId> {
         Vec::new()

@@ -14,8 +14,8 @@ pub use mouse::MouseSpring;
 pub use point_force::PointForce;
 pub use spring::Spring;
 
-use crate::linalg::block::Block;
 use crate::point::Motion;
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// What every force answers. `mass` is [kg], one per particle.
@@ -36,16 +36,16 @@ pub(crate) trait Acts {
     /// What it changes with, while nothing but the motion goes on.
     fn dependence(&self) -> Dependence;
 
-    /// Calls `visit` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step, where q̇ follows q at
-    /// `rate` [1/s]: for one particle its block, for two the block of each and, with the sign turned, of the pair.
+    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step, where q̇
+    /// follows q at `rate` [1/s]. Any two particles that it couples must be among those it names.
     fn tangent<const D: usize>(
         &self,
         motion: Motion<'_, D>,
         rate: f64,
-        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     );
 
-    /// The particles this force names; empty when it acts on all.
+    /// The particles this force names, each once; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
     /// What is wrong with its numbers, in words.
@@ -59,16 +59,8 @@ pub(crate) enum Dependence {
     Nothing,
     /// −coefficient q̇ on every particle [N·s/m].
     Drag(f64),
-    /// The positions and velocities of the particles it names.
+    /// The positions and velocities of the particles it names, and the time.
     Motion,
-}
-
-/// The stiffness of one force, in two parts, so that a method may leave out what is negative.
-pub(crate) struct Tangent<const D: usize> {
-    /// Positive semidefinite.
-    pub(crate) definite: Block<D>,
-    /// Semidefinite of either sign: geometric stiffness.
-    pub(crate) geometric: Block<D>,
 }
 
 macro_rules! forces {
@@ -101,7 +93,7 @@ macro_rules! forces {
                 &self,
                 motion: Motion<'_, D>,
                 rate: f64,
-                visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+                visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
             ) {
                 match self { $(Force::$kind(force) => force.tangent(motion, rate, visit),)* }
             }

@@ -8,9 +8,10 @@
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 
-use super::{Acts, Dependence, Tangent, finite, not_negative};
-use crate::linalg::block::{diagonal, zero};
+use super::{Acts, Dependence, finite, not_negative};
+use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, first, minus, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Damped spring between one particle and a point that a hand moves.
@@ -51,9 +52,14 @@ impl Acts for MouseSpring {
         Dependence::Motion
     }
 
-    fn tangent<const D: usize>(&self, _: Motion<'_, D>, rate: f64, visit: &mut impl FnMut(&[ParticleId], Tangent<D>)) {
-        let definite = diagonal(self.stiffness + rate * self.damping);
-        visit(&[self.particle], Tangent { definite, geometric: zero() });
+    fn tangent<const D: usize>(
+        &self,
+        _: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+        let stiffness = diagonal(self.stiffness + rate * self.damping);
+        visit(self.particle, self.particle, Stiffness::Difference(stiffness));
     }
 
     fn particles(&self) -> Vec<ParticleId> {

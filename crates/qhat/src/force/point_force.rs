@@ -5,8 +5,9 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, Dependence, Tangent, finite};
+use super::{Acts, Dependence, finite};
 use crate::point::{Motion, add, dot, first};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Constant force on one particle.
@@ -37,7 +38,13 @@ impl Acts for PointForce {
         Dependence::Nothing
     }
 
-    fn tangent<const D: usize>(&self, _: Motion<'_, D>, _: f64, _: &mut impl FnMut(&[ParticleId], Tangent<D>)) {}
+    fn tangent<const D: usize>(
+        &self,
+        _: Motion<'_, D>,
+        _: f64,
+        _: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+    }
 
     fn particles(&self) -> Vec<ParticleId> {
         vec![self.particle]

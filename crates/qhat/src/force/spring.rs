@@ -11,9 +11,10 @@
 //! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.
 
-use super::{Acts, Dependence, Tangent, not_negative};
-use crate::linalg::block::{diagonal, outer, plus, zero};
+use super::{Acts, Dependence, not_negative};
+use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
+use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
 /// Damped Hookean spring between two particles.
@@ -86,12 +87,12 @@ impl Acts for Spring {
         &self,
         motion: Motion<'_, D>,
         rate: f64,
-        visit: &mut impl FnMut(&[ParticleId], Tangent<D>),
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
         let Some(Stretch { length, rate: stretching, n }) = self.stretch(motion) else {
             // A spring of no length is linear: the one case in which there is a stiffness without a direction.
             if self.rest == 0.0 {
-                visit(&[self.a, self.b], Tangent { definite: diagonal(self.stiffness), geometric: zero() });
+                visit(self.a, self.b, Stiffness::Difference(diagonal(self.stiffness)));
             }
             return;
         };
@@ -99,7 +100,8 @@ impl Acts for Spring {
         let across = (self.stiffness * (length - self.rest) + self.damping * stretching) / length;
         let definite = outer(self.stiffness + rate * self.damping, n, n);
         let geometric = plus(diagonal(across), -across, outer(1.0, n, n));
-        visit(&[self.a, self.b], Tangent { definite, geometric });
+        visit(self.a, self.b, Stiffness::Difference(definite));
+        visit(self.a, self.b, Stiffness::Difference(geometric));
     }
 
     fn particles(&self) -> Vec<ParticleId> {

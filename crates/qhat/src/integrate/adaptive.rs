@@ -39,8 +39,8 @@ pub(super) trait Method {
     /// The longest substep worth trying [s].
     fn longest(&mut self, state: &State) -> f64;
 
-    /// Tries one substep. What misses the tolerance need not be finished.
-    fn attempt(&mut self, state: &State, h: f64) -> Outcome;
+    /// Tries one substep of h, which brings t to `end`. What misses the tolerance need not be finished.
+    fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome;
 
     /// Goes on from what was tried last.
     fn keep(&mut self, state: &mut State, h: f64) -> Drift;
@@ -84,6 +84,8 @@ pub(super) struct Attempt {
     pub(super) iterations: usize,
     /// Work of forces without a potential [J].
     pub(super) dissipation: f64,
+    /// Work of the drives [J].
+    pub(super) drives: f64,
 }
 
 /// One frame: how far it has come, and what there is to report.
@@ -129,7 +131,9 @@ impl<'a> Frame<'a> {
             }
             self.tried += 1;
             let h = fit(self.proposed.min(method.longest(state)), self.length - self.done);
-            let attempt = match method.attempt(state, h) {
+            let done = if h == self.length - self.done { self.length } else { self.done + h };
+            let end = self.start + done;
+            let attempt = match method.attempt(state, h, end) {
                 Outcome::Singular => return Ok(End::Singular),
                 Outcome::NotMet => None,
                 Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
@@ -141,7 +145,7 @@ impl<'a> Frame<'a> {
                 self.report.rejected += 1;
                 self.proposed = h * growth.unwrap_or(0.5);
                 if self.proposed < SHORTEST * self.length {
-                    return Err(self.not_satisfied(method, state));
+                    return Err(self.not_satisfied(method, state, end));
                 }
                 method.turn_back(state);
                 continue;
@@ -149,8 +153,8 @@ impl<'a> Frame<'a> {
             self.proposed = h * growth.unwrap_or(1.0);
             let drift = method.keep(state, h);
             state.work.dissipation += attempt.dissipation;
-            self.done = if h == self.length - self.done { self.length } else { self.done + h };
-            state.t = self.start + self.done;
+            state.work.drives += attempt.drives;
+            (self.done, state.t) = (done, end);
             let report = &mut self.report;
             report.substeps += 1;
             report.iterations += attempt.iterations;
@@ -186,13 +190,13 @@ impl<'a> Frame<'a> {
     }
 
     /// Which row of what was tried is farthest off.
-    fn not_satisfied(&self, method: &impl Method, state: &State) -> StepError {
+    fn not_satisfied(&self, method: &impl Method, state: &State, end: f64) -> StepError {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
         in_dimension!(self.system.dimension, D => {
             let mut rows = self.system.empty_rows();
             let constraints = self.system.constraints.iter().map(|named| &named.constraint);
-            rows.evaluate(constraints, Motion::<D> { q: &tried.q, qd: &tried.qd });
+            rows.evaluate(constraints, Motion::<D> { q: &tried.q, qd: &tried.qd, t: end });
             let (row, _) = worst_row(self.system, &rows.C);
             match rows.C.get(row) {
                 Some(&residual) => {
@@ -206,16 +210,17 @@ impl<'a> Frame<'a> {
     /// What a frame leaves: the report, and in the state what the next one goes on from. `general` is λ and the equation, where
     /// the frame ended on the general path.
     pub(super) fn finish(mut self, state: &mut State, general: Option<(Vec<f64>, &Equation)>) -> StepReport {
-        let (lambda, deficient) = match general {
+        let (lambda, drives, deficient) = match general {
             Some((lambda, equation)) => {
                 for warning in equation.warnings(self.system) {
                     self.report.warn(warning);
                 }
-                (lambda, equation.solver.deficient)
+                let drives = measure::drive_power(self.system, &equation.rows.Ct, &lambda);
+                (lambda, drives, equation.solver.deficient)
             }
-            None => (Vec::new(), false),
+            None => (Vec::new(), 0.0, false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, resting: 0 });
+        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, drives, resting: 0 });
         self.report.energy = measure::energy(self.system, state);
         self.report
     }
@@ -232,11 +237,11 @@ pub(super) fn begin<const D: usize>(
     let Some(carry) = carry.filter(|carry| carry.lambda.len() == system.row_count()) else {
         return workspace.solve::<D>(system, state, &Feedback::NONE).lambda.clone();
     };
-    let is_factored = workspace.factored_at == state.q;
+    let is_factored = workspace.is_factored_at(state);
     let equation = &mut workspace.equation;
     // Looking at terms between frames, or starting from a saved state, must not change a bit of what follows.
     if is_factored && !equation.solver.deficient && !carry.deficient {
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         equation.apply_forces(system, motion);
         equation.constrain(system, motion);
     } else {
@@ -249,7 +254,7 @@ pub(super) fn begin<const D: usize>(
 
 /// Rows, forces and the factor of A at the state, wherever they are now.
 pub(super) fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
-    let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+    let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     equation.apply_forces(system, motion);
     equation.constrain(system, motion);
     equation.factor::<D>(system, 0.0);

@@ -24,13 +24,15 @@ pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, works
 }
 
 /// Energy that crossed the border while the velocities went from q̇ to q̇' under constant forces [J]:
-/// h Q̂·(q̇ + q̇')/2, which is exact for the constraint force, and the trapezoidal rule for the dissipative ones.
+/// h Q̂·(q̇ + q̇')/2, which is exact for the constraint force, and the trapezoidal rule for the dissipative ones. Drives have their share of the
+/// constraint force's at the C_t where the step begins.
 pub(super) fn work_of_kick<const D: usize>(system: &System, state: &State, h: f64, workspace: &Workspace) -> StepWork {
-    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
-    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
+    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: state.t + h });
     let mut power = 0.0;
     for (k, force) in workspace.equation.Q_hat.iter().enumerate() {
         power += force * 0.5 * (state.qd[k] + workspace.qd[k]);
     }
-    StepWork { dissipation: 0.5 * h * (before + after), stabilization: h * power }
+    let drives = h * workspace.equation.drive_power(system, &system.feedback);
+    StepWork { dissipation: 0.5 * h * (before + after), stabilization: h * power - drives, drives }
 }

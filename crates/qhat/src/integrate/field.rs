@@ -1,4 +1,4 @@
-//! What a Runge–Kutta method integrates: q̈ as a function of q and q̇, and the way back onto the constraints.
+//! What a Runge–Kutta method integrates: q̈ as a function of q, q̇ and t, and the way back onto the constraints.
 //!
 //! Positions and velocities stand in blocks of eight numbers, in an order of the field's own: eight stretches of chain side by
 //! side, or the user's order filled up with zeros. The method adds and scales them without knowing which.
@@ -21,9 +21,10 @@ const MAX_ITERATIONS: usize = 8;
 pub(super) struct Power {
     pub(super) dissipation: f64,
     pub(super) stabilization: f64,
+    pub(super) drives: f64,
 }
 
-/// q̈(q, q̇) in an order of its own.
+/// q̈(q, q̇, t) in an order of its own.
 pub(super) trait Field {
     /// How many blocks of eight numbers q has.
     fn blocks(&self) -> usize;
@@ -35,10 +36,10 @@ pub(super) trait Field {
     fn end(&self, q: &[F8], qd: &[F8], state: &mut State);
 
     /// Writes q̈; `None` where the field cannot tell, because rows depend on each other.
-    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power>;
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power>;
 
-    /// Brings q onto C = 0 and q̇ onto Ċ = 0: the number of iterations.
-    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected;
+    /// Brings q onto C = 0 and q̇ onto Ċ = 0 at the time t: the number of iterations.
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], t: f64, settings: &Settings) -> Projected;
 
     /// What is left of C = 0 and Ċ = 0, of what was projected last.
     fn drift(&self, q: &[F8], qd: &[F8]) -> Drift;
@@ -86,32 +87,37 @@ impl<const D: usize> Field for Rows<'_, D> {
         unpack(qd, &mut state.qd);
     }
 
-    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power> {
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power> {
         let Workspace { equation, q: flat_q, qd: flat_qd, .. } = &mut *self.workspace;
         unpack(q, flat_q);
         unpack(qd, flat_qd);
-        let motion = Motion::<D> { q: flat_q, qd: flat_qd };
+        let motion = Motion::<D> { q: flat_q, qd: flat_qd, t };
         equation.solve(self.system, motion, &self.feedback, self.is_factored, Multipliers::Force);
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
-        Some(Power { dissipation: measure::dissipation(self.system, motion), stabilization: constraint_power.sum() })
+        let drives = equation.drive_power(self.system, &self.feedback);
+        Some(Power {
+            dissipation: measure::dissipation(self.system, motion),
+            stabilization: constraint_power.sum::<f64>() - drives,
+            drives,
+        })
     }
 
-    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected {
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], t: f64, settings: &Settings) -> Projected {
         let Workspace { equation, q: flat_q, qd: flat_qd, delta, .. } = &mut *self.workspace;
         let (system, matrix) = (self.system, &self.system.matrix);
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         for iteration in 0..=MAX_ITERATIONS {
-            equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
+            equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
             let off = worst_row(system, &equation.rows.C).1;
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
-                equation.rows.J.multiply::<D>(flat_qd, &mut equation.b.sum);
+                equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
                 equation.solver.solve(matrix, &equation.b.sum, Multipliers::Correction, delta);
                 add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
-                equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd });
+                equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
                 pack(flat_q, q);
                 pack(flat_qd, qd);
                 self.is_factored = true;
@@ -127,8 +133,7 @@ impl<const D: usize> Field for Rows<'_, D> {
     }
 
     fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
-        let Workspace { equation, q, qd, .. } = &*self.workspace;
-        measure::drift(self.system, &equation.rows, Motion::<D> { q, qd })
+        measure::drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.q)
     }
 
     fn turn_back(&mut self) {
@@ -160,12 +165,12 @@ impl<const D: usize> Field for Chains<'_, D> {
         self.lanes.end::<D>(self.plan, q, qd, state);
     }
 
-    fn accelerate(&mut self, q: &[F8], qd: &[F8], qdd: &mut [F8]) -> Option<Power> {
-        let dissipation = self.lanes.accelerate::<D>(self.system, self.plan, q, qd, qdd)?;
-        Some(Power { dissipation, stabilization: 0.0 })
+    fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power> {
+        let dissipation = self.lanes.accelerate::<D>(self.system, self.plan, q, qd, t, qdd)?;
+        Some(Power { dissipation, ..Power::default() })
     }
 
-    fn project(&mut self, q: &mut [F8], qd: &mut [F8], settings: &Settings) -> Projected {
+    fn project(&mut self, q: &mut [F8], qd: &mut [F8], _: f64, settings: &Settings) -> Projected {
         let attainable = attainable(self.system, settings, vector_unit().dispatch(Largest(q)));
         self.lanes.project::<D>(self.plan, q, qd, attainable)
     }

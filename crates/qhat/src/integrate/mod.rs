@@ -39,7 +39,7 @@ pub struct Workspace {
     /// The state being tried.
     q: Vec<f64>,
     qd: Vec<f64>,
-    /// The q whose A the solver holds factored without ε; empty if that is not known.
+    /// The q, with t behind it, whose A the solver holds factored without ε; empty if that is not known.
     factored_at: Vec<f64>,
     delta: Vec<f64>,
     stages: runge_kutta::Stages,
@@ -72,17 +72,28 @@ impl Workspace {
 
     /// Solves the equation at a state; a factor of A that is there already is kept.
     pub(crate) fn solve<const D: usize>(&mut self, system: &System, state: &State, feedback: &Feedback) -> &Equation {
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        let is_factored = feedback.diagonal_drag == 0.0 && self.factored_at == state.q;
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        let is_factored = feedback.diagonal_drag == 0.0 && self.is_factored_at(state);
         if !is_factored {
             self.equation.solver.stays_deficient = false;
         }
         self.equation.solve(system, motion, feedback, is_factored, Multipliers::Least);
         self.factored_at.clear();
         if feedback.diagonal_drag == 0.0 {
-            self.factored_at.extend_from_slice(&state.q);
+            self.note_factored(state);
         }
         &self.equation
+    }
+
+    /// Whether the factor at hand is that of A at the state.
+    fn is_factored_at(&self, state: &State) -> bool {
+        self.factored_at.split_last() == Some((&state.t, &state.q[..]))
+    }
+
+    /// The factor at hand is that of A at the state.
+    fn note_factored(&mut self, state: &State) {
+        self.factored_at.clone_from(&state.q);
+        self.factored_at.push(state.t);
     }
 }
 
@@ -150,6 +161,7 @@ pub fn project(
 struct StepWork {
     dissipation: f64,
     stabilization: f64,
+    drives: f64,
 }
 
 type FixedStep = fn(&System, &State, f64, &mut Workspace) -> StepWork;
@@ -166,12 +178,13 @@ fn fixed<const D: usize>(
     let work = method(system, state, h, workspace);
     let warnings = workspace.equation.warnings(system);
     workspace.factored_at.clear();
-    let drift = examine::<D>(system, state.t, workspace)?;
+    let drift = examine::<D>(system, state.t, h, workspace)?;
     std::mem::swap(&mut state.q, &mut workspace.q);
     std::mem::swap(&mut state.qd, &mut workspace.qd);
     state.t += h;
     state.work.dissipation += work.dissipation;
     state.work.stabilization += work.stabilization;
+    state.work.drives += work.drives;
     state.carry = None;
     Ok(StepReport {
         substeps: 1,
@@ -186,12 +199,11 @@ fn fixed<const D: usize>(
     })
 }
 
-/// Refuses a tried state that is not finite or has diverged; t is that of the last good state.
-fn examine<const D: usize>(system: &System, t: f64, workspace: &mut Workspace) -> Result<Drift, StepError> {
+/// Refuses a tried state that is not finite or has diverged; t is that of the last good state, h the step from there.
+fn examine<const D: usize>(system: &System, t: f64, h: f64, workspace: &mut Workspace) -> Result<Drift, StepError> {
     check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
-    let motion = Motion::<D> { q: &workspace.q, qd: &workspace.qd };
-    workspace.equation.constrain(system, motion);
-    let drift = measure::drift(system, &workspace.equation.rows, motion);
+    workspace.equation.constrain(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + h });
+    let drift = measure::drift::<D>(system, &workspace.equation.rows, &workspace.q);
     if drift.relative > DIVERGED {
         let row = system.row_names[drift.worst_row].clone();
         return Err(StepError::Diverged { time: t, row, relative: drift.relative });

@@ -36,6 +36,11 @@ impl Pair {
         self.tableau.stages
     }
 
+    #[cfg(test)]
+    pub(super) fn tableau(&self) -> &Tableau {
+        &self.tableau
+    }
+
     pub(super) const fn new(order: u32, tableau: Tableau, estimate: &[f64], coarse: Option<&[f64]>) -> Self {
         let coarse = match coarse {
             Some(weights) => Some(tableau.combination(weights)),
@@ -106,7 +111,7 @@ pub(super) fn carry_on<const D: usize>(
     frame.report.solver = Solver::Rows;
     if end == End::Whole {
         // What ran out of work may have ended on a substep that was taken back: the factor is then that of one of its stages.
-        workspace.factored_at.clone_from(&state.q);
+        workspace.note_factored(state);
     }
     frame.report.factorizations += workspace.equation.solver.factorizations - factorizations;
     let lambda = workspace.equation.lambda.clone();
@@ -135,20 +140,20 @@ impl<F: Field> Method for Run<'_, F> {
         f64::INFINITY
     }
 
-    fn attempt(&mut self, _: &State, h: f64) -> Outcome {
-        let Some(work) = advance(&self.pair.tableau, &mut self.field, self.stages, h) else {
+    fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
+        let Some(work) = advance(&self.pair.tableau, &mut self.field, self.stages, state.t, h) else {
             return if self.stages.overflow() { Outcome::NotMet } else { Outcome::Singular };
         };
         let error = self.error(h);
         if error.is_nan() && self.stages.overflow() {
             return Outcome::NotMet;
         }
-        let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation };
+        let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation, drives: work.drives };
         if error > MISSED * self.settings.tolerance || error.is_nan() {
             return Outcome::Met(attempt);
         }
         let Stages { next_q, next_qd, .. } = self.stages;
-        match self.field.project(next_q, next_qd, self.settings) {
+        match self.field.project(next_q, next_qd, end, self.settings) {
             Projected::Met(iterations) => {
                 attempt.iterations = iterations;
                 Outcome::Met(attempt)

@@ -1,8 +1,8 @@
-//! Projection onto C(q) = 0 and Ċ = 0, in the mass metric.
+//! Projection onto C(q, t) = 0 and Ċ = 0, in the mass metric.
 //!
 //! ```text
 //! q ← q − W Jᵀ A⁻¹ C,  repeated until every |C| is within tolerance
-//! q̇ ← q̇ − W Jᵀ A⁻¹ (J q̇)
+//! q̇ ← q̇ − W Jᵀ A⁻¹ Ċ,  Ċ = J q̇ + C_t
 //! ```
 //!
 //! Newton's method with the step halved while it does not bring the constraints nearer. Fails where no q satisfies them, or
@@ -37,7 +37,7 @@ pub(super) fn project<const D: usize>(
     q.copy_from_slice(&state.q);
     qd.copy_from_slice(&state.qd);
     let (residual_before, iterations) = positions::<D>(system, state.t, settings, equation, q, qd)?;
-    velocities::<D>(system, equation, q, qd);
+    velocities::<D>(system, state.t, equation, q, qd);
     let report = Projection {
         moved: farthest::<D>(q, &state.q),
         velocity_changed: farthest::<D>(qd, &state.qd),
@@ -61,7 +61,7 @@ fn positions<const D: usize>(
     q: &mut [f64],
     qd: &[f64],
 ) -> Result<(f64, usize), StepError> {
-    equation.constrain(system, Motion::<D> { q, qd });
+    equation.constrain(system, Motion::<D> { q, qd, t });
     let before = (0..equation.rows.C.len())
         .filter(|&row| system.softness[row].is_rigid())
         .fold(0.0, |most: f64, row| most.max(equation.rows.C[row].abs()));
@@ -80,7 +80,7 @@ fn positions<const D: usize>(
         for _ in 0..MAX_HALVINGS {
             q.copy_from_slice(&start);
             add_impulse::<D>(&J, &system.inverse_mass, &delta, -fraction, q);
-            equation.constrain(system, Motion::<D> { q, qd });
+            equation.constrain(system, Motion::<D> { q, qd, t });
             if worst_row(system, &equation.rows.C).1 < off {
                 break;
             }
@@ -99,8 +99,8 @@ fn positions<const D: usize>(
 }
 
 /// Takes out of q̇ what would violate Ċ = 0; nothing if it is roundoff.
-fn velocities<const D: usize>(system: &System, equation: &mut Equation, q: &[f64], qd: &mut [f64]) {
-    equation.constrain(system, Motion::<D> { q, qd });
+fn velocities<const D: usize>(system: &System, t: f64, equation: &mut Equation, q: &[f64], qd: &mut [f64]) {
+    equation.constrain(system, Motion::<D> { q, qd, t });
     let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
     let fastest = fastest.fold(0.0, f64::max).sqrt();
     let rows = equation.rows.Cd.iter().zip(&system.row_scale);

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! q̇½ = q̇ + ½h W Q(q, q̇)
-//! q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q') = 0
+//! q' = q + h q̇½ + W J(q)ᵀ μ,             μ such that C(q', t + h) = 0
 //! q̇* = q̇½ + W J(q)ᵀ μ/h
-//! q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' = 0
+//! q̇' = q̇* + ½h W Q(q', ·) + W J(q')ᵀ ν,   ν such that J(q') q̇' + C_t = 0
 //! ```
 //!
 //! μ = ½h² λ(t + h/3) and ν = ½h λ(t + 2h/3) to second order. Both are solved with A = J W Jᵀ: μ by Newton's method with A(q)
@@ -48,6 +48,8 @@ pub(super) struct Scratch {
     delta: Vec<f64>,
     /// W Q at the start.
     WQ: Vec<f64>,
+    /// C_t at the start.
+    Ct: Vec<f64>,
     /// W J(q)ᵀ μ and W J(q')ᵀ ν.
     push: Vec<f64>,
     kick: Vec<f64>,
@@ -64,6 +66,7 @@ impl Scratch {
             nu: vec![0.0; m],
             delta: vec![0.0; m],
             WQ: vec![0.0; coordinates],
+            Ct: vec![0.0; m],
             push: vec![0.0; coordinates],
             kick: vec![0.0; coordinates],
             rowsum: vec![0.0; n],
@@ -102,7 +105,7 @@ pub(super) fn frame<const D: usize>(
     frame.report.integrator = Integrator::Rattle;
     match end {
         Ok(_) => {
-            workspace.factored_at.clone_from(&state.q);
+            workspace.note_factored(state);
             Ok(frame.finish(state, Some((lambda, &workspace.equation))))
         }
         Err(StepError::NotSatisfied { .. }) => {
@@ -126,18 +129,21 @@ impl<const D: usize> Method for Run<'_, D> {
 
     fn longest(&mut self, state: &State) -> f64 {
         let Workspace { equation, rattle: Scratch { rowsum, damping, .. }, .. } = &mut *self.workspace;
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         control::longest_substep(self.system, equation, &self.lambda, motion, rowsum, damping)
     }
 
-    fn attempt(&mut self, state: &State, h: f64) -> Outcome {
+    fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
         let Run { system, settings, workspace, lambda } = self;
-        let Some((error, iterations)) = substep::<D>(system, state, settings, h, lambda, workspace) else {
+        let Some((error, iterations)) = substep::<D>(system, state, settings, h, end, lambda, workspace) else {
             return Outcome::NotMet;
         };
-        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
-        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after) })
+        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
+        // μ/h is the impulse where the substep begins, ν where it ends.
+        let Workspace { equation, rattle: Scratch { mu, nu, Ct, .. }, .. } = &**workspace;
+        let drives = measure::drive_power(system, Ct, mu) / h + measure::drive_power(system, &equation.rows.Ct, nu);
+        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after), drives })
     }
 
     fn keep(&mut self, state: &mut State, h: f64) -> Drift {
@@ -146,7 +152,7 @@ impl<const D: usize> Method for Run<'_, D> {
         }
         std::mem::swap(&mut state.q, &mut self.workspace.q);
         std::mem::swap(&mut state.qd, &mut self.workspace.qd);
-        measure::drift(self.system, &self.workspace.equation.rows, Motion::<D> { q: &state.q, qd: &state.qd })
+        measure::drift::<D>(self.system, &self.workspace.equation.rows, &state.q)
     }
 
     fn turn_back(&mut self, state: &State) {
@@ -161,13 +167,14 @@ impl<const D: usize> Method for Run<'_, D> {
     }
 }
 
-/// Tries one substep from `state` into the workspace: the error estimate relative to the extent of the system and the
+/// Tries one substep from `state` to the time `end` into the workspace: the error estimate relative to the extent of the system and the
 /// number of Newton iterations, or `None` if the constraints were not met.
 fn substep<const D: usize>(
     system: &System,
     state: &State,
     settings: &Settings,
     h: f64,
+    end: f64,
     lambda: &[f64],
     workspace: &mut Workspace,
 ) -> Option<(f64, usize)> {
@@ -176,6 +183,7 @@ fn substep<const D: usize>(
     let matrix = &system.matrix;
     scratch.J.blocks.copy_from_slice(&equation.rows.J.blocks);
     scratch.WQ.copy_from_slice(&equation.WQ);
+    scratch.Ct.copy_from_slice(&equation.rows.Ct);
 
     // q̇½, and q' from the multipliers of the last substep.
     for (mu, multiplier) in scratch.mu.iter_mut().zip(lambda) {
@@ -191,7 +199,7 @@ fn substep<const D: usize>(
     let mut last = f64::INFINITY;
     let mut iterations = 0;
     loop {
-        equation.constrain(system, Motion::<D> { q, qd });
+        equation.constrain(system, Motion::<D> { q, qd, t: end });
         let off = worst_row(system, &equation.rows.C).1;
         if iterations > 0 && off <= attainable(system, settings, largest(q)) {
             break;
@@ -216,18 +224,18 @@ fn substep<const D: usize>(
 
     // Forces at q' with the velocity they lead to, the second half of the constraint's push included: second order also
     // where they depend on it.
-    equation.apply_forces(system, Motion::<D> { q, qd });
+    equation.apply_forces(system, Motion::<D> { q, qd, t: end });
     for k in 0..qd.len() {
         scratch.kick[k] = qd[k] + 0.5 * h * equation.WQ[k] + scratch.push[k] / h;
     }
-    equation.apply_forces(system, Motion::<D> { q, qd: &scratch.kick });
+    equation.apply_forces(system, Motion::<D> { q, qd: &scratch.kick, t: end });
     for k in 0..qd.len() {
         qd[k] += 0.5 * h * equation.WQ[k];
     }
 
     // ν in one solve, with the factor at q'.
     equation.factor::<D>(system, 0.0);
-    equation.rows.J.multiply::<D>(qd, &mut scratch.delta);
+    equation.rows.rates::<D>(qd, &mut scratch.delta);
     equation.solver.solve(matrix, &scratch.delta, Multipliers::Force, &mut scratch.nu);
     for nu in &mut scratch.nu {
         *nu = -*nu;
@@ -237,7 +245,7 @@ fn substep<const D: usize>(
     for k in 0..qd.len() {
         qd[k] += scratch.kick[k];
     }
-    equation.constrain(system, Motion::<D> { q, qd });
+    equation.constrain(system, Motion::<D> { q, qd, t: end });
 
     // ½h² (q̈ of the velocity stage − q̈ of the position stage), particle by particle.
     let mut error = 0.0_f64;

@@ -9,22 +9,22 @@ use super::{StepWork, Workspace};
 use crate::state::State;
 use crate::system::System;
 
-static RK4: Tableau =
+pub(super) static RK4: Tableau =
     Tableau::new(&[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]], &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]);
 
 pub(super) fn step<const D: usize>(system: &System, state: &State, h: f64, workspace: &mut Workspace) -> StepWork {
-    let solver = &mut workspace.equation.solver;
     // What was singular is asked anew, so that it does not matter who looked between two steps.
-    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.factored_at == state.q && !solver.deficient;
+    let is_regular = !workspace.equation.solver.deficient;
+    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state) && is_regular;
     if !is_factored {
-        solver.stays_deficient = false;
+        workspace.equation.solver.stays_deficient = false;
     }
     let mut stages = std::mem::take(&mut workspace.stages);
     let mut field = Rows::<D> { system, workspace, feedback: system.feedback, is_factored };
     stages.resize(field.blocks());
     field.begin(state, &mut stages.q, &mut stages.qd);
     // The general path always has an answer.
-    let work = advance(&RK4, &mut field, &mut stages, h).unwrap_or_default();
+    let work = advance(&RK4, &mut field, &mut stages, state.t, h).unwrap_or_default();
     unpack(&stages.next_q, &mut workspace.q);
     unpack(&stages.next_qd, &mut workspace.qd);
     workspace.stages = stages;

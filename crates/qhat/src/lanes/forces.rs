@@ -43,7 +43,7 @@ impl Forces {
     }
 
     /// Asks the constant forces, and sorts the others. `q` and `qd` are those of the state.
-    pub(super) fn begin<const D: usize>(&mut self, system: &System, plan: &Plan) {
+    pub(super) fn begin<const D: usize>(&mut self, system: &System, plan: &Plan, t: f64) {
         self.drag = 0.0;
         self.varying.clear();
         self.named.clear();
@@ -51,7 +51,7 @@ impl Forces {
         for (number, force) in system.all_forces().enumerate() {
             match force.dependence() {
                 Dependence::Nothing => {
-                    force.add(Motion::<D> { q: &self.q, qd: &self.qd }, &system.mass, &mut self.Q);
+                    force.add(Motion::<D> { q: &self.q, qd: &self.qd, t }, &system.mass, &mut self.Q);
                 }
                 Dependence::Drag(coefficient) => self.drag += coefficient,
                 Dependence::Motion => {
@@ -70,19 +70,26 @@ impl Forces {
     }
 
     /// W Q at a motion, and the power of what no potential accounts for [W].
-    pub(super) fn apply<const D: usize>(&mut self, system: &System, plan: &Plan, q: &[F8], qd: &[F8]) -> (&[F8], f64) {
+    pub(super) fn apply<const D: usize>(
+        &mut self,
+        system: &System,
+        plan: &Plan,
+        q: &[F8],
+        qd: &[F8],
+        t: f64,
+    ) -> (&[F8], f64) {
         if self.drag == 0.0 && self.varying.is_empty() {
             return (&self.constant, 0.0);
         }
         let drag = Drag::<D> { plan, drag: self.drag, constant: &self.constant, qd, WQ: &mut self.WQ };
         let mut power = vector_unit().dispatch(drag);
         if !self.varying.is_empty() {
-            power += self.apply_varying::<D>(system, plan, q, qd);
+            power += self.apply_varying::<D>(system, plan, q, qd, t);
         }
         (&self.WQ, power)
     }
 
-    fn apply_varying<const D: usize>(&mut self, system: &System, plan: &Plan, q: &[F8], qd: &[F8]) -> f64 {
+    fn apply_varying<const D: usize>(&mut self, system: &System, plan: &Plan, q: &[F8], qd: &[F8], t: f64) -> f64 {
         for &(particle, home) in &self.named {
             for c in 0..D {
                 if let Some(place) = home {
@@ -92,7 +99,7 @@ impl Forces {
                 self.Q[particle * D + c] = 0.0;
             }
         }
-        let motion = Motion::<D> { q: &self.q, qd: &self.qd };
+        let motion = Motion::<D> { q: &self.q, qd: &self.qd, t };
         let mut power = 0.0;
         for &number in &self.varying {
             let force = system.force(number);

@@ -75,7 +75,7 @@ impl Lanes {
                 qd[place.block * D + c].0[place.lane] = user_qd[place.particle * D + c];
             }
         }
-        self.forces.begin::<D>(system, plan);
+        self.forces.begin::<D>(system, plan, state.t);
     }
 
     /// Writes a motion in lanes back to the user's order.
@@ -97,9 +97,10 @@ impl Lanes {
         plan: &Plan,
         q: &[F8],
         qd: &[F8],
+        t: f64,
         qdd: &mut [F8],
     ) -> Option<f64> {
-        let (WQ, power) = self.forces.apply::<D>(system, plan, q, qd);
+        let (WQ, power) = self.forces.apply::<D>(system, plan, q, qd, t);
         let right = &|_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &WQ[at] };
         let is_regular = Solve::<_, D> { plan, groups: &plan.groups, q, right, rows: &mut self.rows, out: qdd }.run();
         is_regular.then_some(power)

@@ -216,7 +216,12 @@ fn chains(system: &System, is_held: &[bool]) -> Option<Vec<Chain>> {
     let mut rods = Vec::new();
     let mut touching = vec![[usize::MAX; 2]; is_held.len()];
     for named in &system.constraints {
-        let Constraint::Distance(rod) = &named.constraint else { continue };
+        let Some(rod) = named.constraint.as_rod() else {
+            if matches!(named.constraint, Constraint::Nail(_)) {
+                continue;
+            }
+            return None;
+        };
         if rod.compliance > 0.0 {
             // What gives way is a spring.
             continue;

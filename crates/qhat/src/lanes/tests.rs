@@ -87,7 +87,7 @@ fn accelerations<const D: usize>(system: &System, state: &State) -> Vec<f64> {
     let plan = system.plan.as_ref().expect("nothing but chains");
     let Laid { mut lanes, q, qd } = lay::<D>(system, plan, state);
     let mut qdd = q.clone();
-    lanes.accelerate::<D>(system, plan, &q, &qd, &mut qdd).expect("regular");
+    lanes.accelerate::<D>(system, plan, &q, &qd, 0.0, &mut qdd).expect("regular");
     let mut laid = state.clone();
     lanes.end::<D>(plan, &q, &qdd, &mut laid);
     let home = |k: usize| plan.home(k / D).is_some();
@@ -181,7 +181,7 @@ fn a_taut_line_goes_over_to_the_general_path() {
     let (system, mut state) = builder.build().unwrap();
     let plan = system.plan.as_ref().unwrap();
     let Laid { mut lanes, q, qd } = lay::<2>(&system, plan, &state);
-    assert_eq!(lanes.accelerate::<2>(&system, plan, &q, &qd, &mut q.clone()), None);
+    assert_eq!(lanes.accelerate::<2>(&system, plan, &q, &qd, 0.0, &mut q.clone()), None);
     let settings = Settings { integrator: Integrator::Dop853, ..Settings::default() };
     let mut workspace = Workspace::new(&system);
     let report = step(&system, &mut state, &settings, &mut workspace).unwrap();

@@ -16,6 +16,7 @@ pub(crate) use matrix::{MatrixPlan, MatrixStructure};
 pub(crate) use rhs::RightHandSide;
 
 use crate::constraint::Rows;
+use crate::measure;
 use crate::point::Motion;
 use crate::report::Warning;
 use crate::settings::Feedback;
@@ -76,6 +77,11 @@ impl Equation {
             self.lambda[row] = -(self.rows.C[row] / soft.compliance + soft.damping * self.rows.Cd[row]);
         }
         reaction::accelerations::<D>(&system.inverse_mass, &self.Q, &self.Q_hat, &mut self.qdd);
+    }
+
+    /// Power of the drives, of Q̂ as it was solved last [W].
+    pub(crate) fn drive_power(&self, system: &System, feedback: &Feedback) -> f64 {
+        (1.0 - feedback.elasticity) * measure::drive_power(system, &self.rows.Ct, &self.lambda)
     }
 
     /// Q and W Q.

@@ -107,7 +107,7 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
     let clock = Instant::now();
     let mut equation = Equation::new(&system);
     let made = clock.elapsed().as_secs_f64();
-    equation.constrain(&system, Motion::<2> { q: &state.q, qd: &state.qd });
+    equation.constrain(&system, Motion::<2> { q: &state.q, qd: &state.qd, t: state.t });
     let known: Vec<f64> = (0..m).map(|i| (i as f64 * 0.618).fract() - 0.4).collect();
     let b = multiply(&system, &equation, &known);
     let mut lambda = vec![0.0; m];

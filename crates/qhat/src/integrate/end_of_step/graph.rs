@@ -9,12 +9,22 @@ use crate::force::Acts;
 use crate::linalg::{BlockLdl, LeafToRoot, Link, NONE};
 use crate::system::{ParticleId, System};
 
-/// The nodes that a constraint or force touches, up to two, and the edge between them.
+/// Where a block stands: the nodes of its row and column, the same on the diagonal, and the edge between them; each may be
+/// [`NONE`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) a: usize,
     pub(super) b: usize,
     pub(super) edge: usize,
+}
+
+/// Where the places of one constraint begin.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    /// Among the entries of J: that of its first particle in its first row.
+    entry: usize,
+    /// Among the edges between two of its particles i < j: that of 0 and 1, the others following in the order 02, 12, 03, ….
+    edge: usize,
 }
 
 /// Nodes, edges, and how they are eliminated.
@@ -35,7 +45,8 @@ pub(super) struct Graph {
     /// Rows that act through a penalty.
     pub(super) penalties: Vec<usize>,
     /// Where each constraint stands.
-    pub(super) constraints: Vec<Place>,
+    constraints: Vec<Own>,
+    own_edges: Vec<usize>,
     pub(super) forest: LeafToRoot,
     pub(super) cycles: BlockLdl,
     pub(super) has_cycles: bool,
@@ -69,21 +80,43 @@ impl Graph {
             idle: Vec::new(),
             penalties: Vec::new(),
             constraints: Vec::new(),
+            own_edges: Vec::new(),
             forest: LeafToRoot::default(),
             cycles: BlockLdl::default(),
             has_cycles: false,
         };
-        graph.constraints = system.constraints.iter().map(|named| graph.place(&named.constraint.particles())).collect();
+        for named in &system.constraints {
+            let own = Own { entry: system.layout.start[named.first_row], edge: graph.own_edges.len() };
+            graph.constraints.push(own);
+            let ids = named.constraint.particles();
+            for (j, &b) in ids.iter().enumerate() {
+                for &a in &ids[..j] {
+                    let edge = graph.place(a, b).edge;
+                    graph.own_edges.push(edge);
+                }
+            }
+        }
         graph.order_elimination(system);
         graph
     }
 
-    /// Where something that acts on up to two particles stands.
-    pub(super) fn place(&self, ids: &[ParticleId]) -> Place {
-        let mut nodes = ids.iter().map(|id| self.node[id.0]).filter(|&node| node != NONE);
-        let (a, b) = (nodes.next().unwrap_or(NONE), nodes.next().unwrap_or(NONE));
-        let edge = if b == NONE { NONE } else { self.find(a, b) };
-        Place { a, b, edge }
+    /// The node of a particle, or [`NONE`].
+    pub(super) fn node(&self, id: ParticleId) -> usize {
+        self.node[id.0]
+    }
+
+    /// Where the block of two particles stands, or of one with itself.
+    pub(super) fn place(&self, a: ParticleId, b: ParticleId) -> Place {
+        let (a, b) = (self.node(a), self.node(b));
+        Place { a, b, edge: self.find(a, b) }
+    }
+
+    /// The same for the i-th and the j-th particle of a constraint, i ≤ j.
+    #[inline(always)]
+    pub(super) fn own_place(&self, constraint: usize, i: usize, j: usize) -> Place {
+        let Own { entry, edge } = self.constraints[constraint];
+        let (a, b) = (self.entry_node[entry + i], self.entry_node[entry + j]);
+        Place { a, b, edge: if i == j { NONE } else { self.own_edges[edge + j * (j - 1) / 2 + i] } }
     }
 
     pub(super) fn find(&self, a: usize, b: usize) -> usize {
@@ -107,10 +140,16 @@ impl Graph {
         // For each edge and each node the first row that belongs to it alone.
         let mut row_of_edge = vec![NONE; self.edges.len()];
         let mut row_of_node = vec![NONE; count];
+        let pulling = system.constraints.iter().flat_map(|named| {
+            let rows = named.constraint.row_count(system.dimension());
+            std::iter::repeat_n(named.constraint.pulls_on_each(), rows)
+        });
+        let pulls_on_each: Vec<bool> = pulling.collect();
         for row in (0..system.row_count()).rev() {
             match self.touched(system, row)[..] {
                 [entry] => row_of_node[self.entry_node[entry]] = row,
-                [a, b] => {
+                // Where nothing pulls on the child, the row would be lost with it.
+                [a, b] if pulls_on_each[row] => {
                     let edge = self.find(self.entry_node[a], self.entry_node[b]);
                     if edge != NONE {
                         row_of_edge[edge] = row;

@@ -13,9 +13,10 @@
 use super::graph::{Graph, Place};
 use crate::constraint::{Holds, Rows};
 use crate::force::Acts;
-use crate::linalg::block::{Block, accumulate, diagonal, outer, store, vector};
+use crate::linalg::block::{Block, accumulate, diagonal, outer, store, transposed, vector};
 use crate::linalg::{NONE, Saddle};
 use crate::point::{Motion, dot};
+use crate::stiffness::Stiffness;
 use crate::system::System;
 
 /// ε of a row, relative to Σ |g|²/(stiffness of the particle): small enough to gain eight digits an iteration, large enough to
@@ -32,8 +33,8 @@ const SOLVED: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
     pub(super) graph: Graph,
-    diagonal: Vec<f64>,
-    coupling: Vec<f64>,
+    pub(super) diagonal: Vec<f64>,
+    pub(super) coupling: Vec<f64>,
     retreat: Vec<f64>,
     /// m of each node, and m + h_e² |K| as one number.
     mass: Vec<f64>,
@@ -129,14 +130,10 @@ impl Matrix {
         signed: bool,
     ) {
         for (k, named) in system.constraints.iter().enumerate() {
-            let place = self.graph.constraints[k];
             let multipliers = &mu[named.first_row..named.first_row + named.constraint.row_count(D)];
-            if place.a == NONE {
-                continue;
-            }
-            if let Some(block) = named.constraint.geometric_stiffness(motion, multipliers) {
-                self.add(place, &block, signed);
-            }
+            named.constraint.geometric_stiffness(motion, multipliers, &mut |i, j, stiffness| {
+                self.add(self.graph.own_place(k, i, j), &stiffness, signed);
+            });
         }
     }
 
@@ -144,30 +141,53 @@ impl Matrix {
     fn add_tangents<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>, h_e: f64, signed: bool) {
         let weight = h_e * h_e;
         for force in &system.forces {
-            force.tangent::<D>(motion, 1.0 / h_e, &mut |ids, tangent| {
-                let place = self.graph.place(ids);
-                if place.a != NONE {
-                    self.add(place, &tangent.definite.map(|row| row.map(|entry| weight * entry)), true);
-                    self.add(place, &tangent.geometric.map(|row| row.map(|entry| weight * entry)), signed);
-                }
+            force.tangent::<D>(motion, 1.0 / h_e, &mut |a, b, stiffness| {
+                self.add(self.graph.place(a, b), &stiffness.scaled(weight), signed);
             });
+        }
+    }
+
+    /// Adds what it may: all if `signed`, else what is known to be positive.
+    #[inline(always)]
+    pub(super) fn add<const D: usize>(&mut self, place: Place, stiffness: &Stiffness<D>, signed: bool) {
+        match stiffness {
+            Stiffness::Difference(block) => self.add_difference(place, block, signed),
+            Stiffness::Definite(block) => self.add_block(place, block),
+            Stiffness::Indefinite(block) if signed => self.add_block(place, block),
+            // Nothing is positive semidefinite, too: Newton's method goes downhill without it, if slower.
+            Stiffness::Indefinite(_) => {}
+        }
+    }
+
+    /// One block of any matrix.
+    fn add_block<const D: usize>(&mut self, place: Place, block: &Block<D>) {
+        if place.a == place.b {
+            if place.a != NONE {
+                accumulate(&mut self.diagonal, place.a, 1.0, block);
+                self.size[place.a] += (0..D).map(|k| block[k][k].abs()).sum::<f64>();
+            }
+        } else if place.edge != NONE {
+            let is_turned = self.graph.edges[place.edge] != (place.a, place.b);
+            let block = if is_turned { transposed(block) } else { *block };
+            accumulate(&mut self.coupling, place.edge, 1.0, &block);
         }
     }
 
     /// Adds a semidefinite block to the nodes it touches and takes it from between them.
     #[inline(always)]
-    fn add<const D: usize>(&mut self, place: Place, block: &Block<D>, signed: bool) {
+    fn add_difference<const D: usize>(&mut self, place: Place, block: &Block<D>, signed: bool) {
         let trace: f64 = (0..D).map(|k| block[k][k]).sum();
         if trace < 0.0 && !signed {
             return;
         }
-        accumulate(&mut self.diagonal, place.a, 1.0, block);
-        self.size[place.a] += trace.abs();
-        if place.b == NONE {
-            return;
+        if place.a != NONE {
+            accumulate(&mut self.diagonal, place.a, 1.0, block);
+            self.size[place.a] += trace.abs();
         }
-        accumulate(&mut self.diagonal, place.b, 1.0, block);
-        self.size[place.b] += trace.abs();
+        if place.b != NONE && place.b != place.a {
+            accumulate(&mut self.diagonal, place.b, 1.0, block);
+            self.size[place.b] += trace.abs();
+        }
         if place.edge != NONE {
             accumulate(&mut self.coupling, place.edge, -1.0, block);
             if trace < 0.0 {

@@ -54,7 +54,7 @@ pub(super) struct Scratch {
 impl Scratch {
     fn new(system: &System) -> Self {
         let zeros = || vec![0.0; system.coordinate_count()];
-        Scratch { newton: Newton::new(system), base: Base { q: zeros(), qd: zeros(), h_e: 0.0 } }
+        Scratch { newton: Newton::new(system), base: Base { q: zeros(), qd: zeros(), h_e: 0.0, end: 0.0 } }
     }
 }
 
@@ -73,7 +73,8 @@ pub(super) fn frame<const D: usize>(
         // λ of the equation is the best first guess.
         let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
-        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None, resting: 0 });
+        let drives = measure::drive_power(system, &equation.rows.Ct, &lambda);
+        state.carry = Some(Carry { lambda, substep: frame, deficient, previous: None, drives, resting: 0 });
     }
     workspace.factored_at.clear();
     scratch.newton.matrix.factorizations = workspace.equation.solver.factorizations - before;
@@ -97,6 +98,7 @@ fn substeps<const D: usize>(
     let (mut done, mut parts) = (0, PARTS);
     while done < PARTS {
         let h = frame * (f64::from(parts) / f64::from(PARTS));
+        scratch.base.end = start + frame * (f64::from(done + parts) / f64::from(PARTS));
         let left = settings.frame_budget - report.iterations.min(settings.frame_budget);
         let ending = attempt::<D>(formula, system, state, settings, h, left, workspace, scratch);
         report.iterations += ending.iterations;
@@ -119,15 +121,14 @@ fn substeps<const D: usize>(
         }
         let Workspace { equation, q, qd, .. } = &mut *workspace;
         let mut tried = Tried { equation, q, qd };
-        scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, &mut tried);
+        let kick = scratch.newton.project_velocities::<D>(system, &scratch.base, ending.is_factored, &mut tried);
         check_finite::<D>(system, state.t, &workspace.q, &workspace.qd)?;
-        keep::<D>(formula, system, state, h, workspace, scratch);
+        keep::<D>(formula, system, state, h, kick, workspace, scratch);
         report.substeps += 1;
         report.smallest_substep = report.smallest_substep.min(h);
         done += parts;
-        state.t = start + frame * (f64::from(done) / f64::from(PARTS));
-        let motion = Motion::<D> { q: &state.q, qd: &state.qd };
-        let drift = measure::drift(system, &workspace.equation.rows, motion);
+        state.t = scratch.base.end;
+        let drift = measure::drift::<D>(system, &workspace.equation.rows, &state.q);
         report.max_residual = report.max_residual.max(drift.residual);
         report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
         report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);
@@ -191,19 +192,22 @@ fn solve<const D: usize>(
     newton.solve::<D>(system, settings, base, limit, &mut Tried { equation, q, qd })
 }
 
-/// Makes the step in the workspace the state, and what a restart needs its carry.
+/// Makes the step in the workspace the state, and what a restart needs its carry. `kick` is the work of the drives in the
+/// projection of velocities [J].
 fn keep<const D: usize>(
     formula: &Formula,
     system: &System,
     state: &mut State,
     h: f64,
+    kick: f64,
     workspace: &mut Workspace,
     scratch: &Scratch,
 ) {
-    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd });
-    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd });
+    let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: scratch.base.end });
+    let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
     // The end point's rule is backward Euler's own; the trapezoidal rule is of second order.
-    state.work.dissipation += h * if formula.second.is_some() { 0.5 * (before + after) } else { after };
+    let mean = |before: f64, after: f64| if formula.second.is_some() { 0.5 * (before + after) } else { after };
+    state.work.dissipation += h * mean(before, after);
     std::mem::swap(&mut state.q, &mut workspace.q);
     std::mem::swap(&mut state.qd, &mut workspace.qd);
     if let Some(carry) = &mut state.carry {
@@ -211,6 +215,11 @@ fn keep<const D: usize>(
         for (multiplier, mu) in carry.lambda.iter_mut().zip(&scratch.newton.mu) {
             *multiplier = mu / scale;
         }
+        // λ brings q onto C = 0, and the projection adds what the velocity needs: only both together are the force.
+        let power = measure::drive_power(system, &workspace.equation.rows.Ct, &carry.lambda);
+        let drives = power + kick / scratch.base.h_e;
+        state.work.drives += h * mean(carry.drives, drives);
+        carry.drives = drives;
         carry.substep = h;
         let previous = carry.previous.get_or_insert_with(|| Previous { q: Vec::new(), qd: Vec::new(), h });
         previous.q.clone_from(&workspace.q);

@@ -3,7 +3,7 @@
 //! ```text
 //! q̇ = (q − q*)/h_e                                        q*, q̇* and h_e say which method it is
 //! M (q − q* − h_e q̇*) − h_e² Q(q, q̇) − Jᵀ μ = 0           μ = h_e² λ
-//! C + α λ + α c Ċ = 0                                      α = 0 for a rigid row
+//! C + α λ + α c Ċ = 0                                      α = 0 for a rigid row; C, J and Q at t + h
 //! ```
 //!
 //! The factor of an iteration is kept for the next where the speed at which the residual fell says that it will do: the last
@@ -17,6 +17,7 @@ use super::matrix::Matrix;
 use crate::force::Acts;
 use crate::integrate::projection::{attainable, largest};
 use crate::linalg::NONE;
+use crate::measure;
 use crate::multiplier::Equation;
 use crate::point::{Motion, block, dot, norm};
 use crate::settings::Settings;
@@ -38,6 +39,8 @@ pub(in crate::integrate) struct Base {
     pub(in crate::integrate) qd: Vec<f64>,
     /// h_e [s].
     pub(in crate::integrate) h_e: f64,
+    /// t at the end of the step [s], where everything is evaluated.
+    pub(in crate::integrate) end: f64,
 }
 
 /// Arrays of the iteration.
@@ -153,7 +156,7 @@ impl Newton {
     }
 
     fn factor<const D: usize>(&mut self, system: &System, aim: &Aim<'_>, tried: &Tried<'_>) -> bool {
-        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: aim.base.end };
         self.matrix.factor(system, &tried.equation.rows, motion, &self.mu, aim.base.h_e)
     }
 
@@ -177,7 +180,7 @@ impl Newton {
         for (v, (x, from)) in tried.qd.iter_mut().zip(tried.q.iter().zip(&base.q)) {
             *v = (x - from) / h_e;
         }
-        let motion = Motion::<D> { q: tried.q, qd: tried.qd };
+        let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: base.end };
         tried.equation.constrain(system, motion);
         system.add_applied_forces(motion, &mut tried.equation.Q);
         let (rows, Q) = (&tried.equation.rows, &tried.equation.Q);
@@ -195,9 +198,9 @@ impl Newton {
         }
         for force in &system.forces {
             force.stiffness(motion, &mut |id, stiffness, damping| {
-                let place = matrix.graph.place(&[id]);
-                if place.a != NONE {
-                    rounding[place.a] += h_e * (h_e * stiffness + damping) * farthest;
+                let node = matrix.graph.node(id);
+                if node != NONE {
+                    rounding[node] += h_e * (h_e * stiffness + damping) * farthest;
                 }
             });
         }
@@ -247,20 +250,21 @@ impl Newton {
 
     /// Takes out of q̇ what violates Ċ = 0, in the metric of the step's own matrix M + h_e² K: its factor is at hand, and what
     /// hangs on a tight rod is not kicked sideways as it would be in the metric of M. `is_factored` says whether this step made
-    /// one.
+    /// one. Returns the work of the drives in it [J].
     pub(super) fn project_velocities<const D: usize>(
         &mut self,
         system: &System,
         base: &Base,
         mut is_factored: bool,
         tried: &mut Tried<'_>,
-    ) {
+    ) -> f64 {
         let Tried { equation, q, qd } = tried;
         /// The factor belongs to a q next door: each pass gains as many digits as J has in common there, four or more.
         const PASSES: usize = 4;
         /// A rate below this part of the fastest particle's speed over the extent is roundoff.
         const CONSISTENT: f64 = 1e-13;
         let fastest = qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let mut drives = 0.0;
         for _ in 0..PASSES {
             self.r.fill(0.0);
             let mut worst = 0.0_f64;
@@ -268,7 +272,7 @@ impl Newton {
                 let takes_part = !self.matrix.graph.idle[row] && system.softness[row].is_rigid();
                 let entries = system.layout.start[row]..system.layout.start[row + 1];
                 let terms = entries.map(|e| dot(equation.rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
-                let rate: f64 = terms.sum();
+                let rate = terms.sum::<f64>() + equation.rows.Ct[row];
                 self.s[row] = if takes_part { -rate } else { 0.0 };
                 worst = worst.max(self.s[row].abs() * self.per_scale[row]);
             }
@@ -276,19 +280,23 @@ impl Newton {
                 break;
             }
             if !is_factored {
-                is_factored = self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd }, &self.mu, base.h_e);
+                is_factored =
+                    self.matrix.factor(system, &equation.rows, Motion::<D> { q, qd, t: base.end }, &self.mu, base.h_e);
             }
             if !is_factored {
                 break;
             }
             self.matrix.solve::<D>(system, &mut self.r, &mut self.s);
+            // s is the impulse turned round.
+            drives -= measure::drive_power(system, &equation.rows.Ct, &self.s);
             for (id, change) in self.matrix.graph.particle.iter().zip(self.r.chunks_exact(D)) {
                 for (v, change) in qd[id.0 * D..][..D].iter_mut().zip(change) {
                     *v += change;
                 }
             }
         }
-        equation.constrain(system, Motion::<D> { q, qd });
+        equation.constrain(system, Motion::<D> { q, qd, t: base.end });
+        drives
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::matrix::Matrix;
 use crate::force::Acts;
+use crate::linalg::block::{Block, transposed};
 use crate::point::Motion;
+use crate::stiffness::Stiffness;
 use crate::{
     Dimension, Distance, DistanceForm, Drag, MouseSpring, Nail, NailForm, Particle, ParticleId, Spring, System,
 };
@@ -76,7 +78,7 @@ fn solve_dense(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 /// h_e² Q + Jᵀ μ at q, with q̇ = q/h_e.
 fn pull(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
-    let motion = Motion::<D> { q, qd: &qd };
+    let motion = Motion::<D> { q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let mut sum = vec![0.0; q.len()];
@@ -94,7 +96,7 @@ fn check(what: &str, system: &System, q: &[f64]) {
     // In tension, the more the farther down the list: K is positive then, and nothing needs mending.
     let mu: Vec<f64> = (0..m).map(|row| -0.02 * (1.0 + row as f64)).collect();
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
-    let motion = Motion::<D> { q, qd: &qd };
+    let motion = Motion::<D> { q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
 
@@ -200,7 +202,7 @@ fn a_net_is_factored_in_blocks() {
 fn a_compressed_chain_is_mended() {
     let (system, q) = system(&TREE, |_| {});
     let qd = vec![0.0; q.len()];
-    let motion = Motion::<D> { q: &q, qd: &qd };
+    let motion = Motion::<D> { q: &q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let mu = vec![5.0; system.row_count()];
@@ -212,4 +214,39 @@ fn a_compressed_chain_is_mended() {
     // A positive definite matrix leads along the push, not against it.
     let along: f64 = r.iter().zip(&push).map(|(x, f)| x * f).sum();
     assert!(along.is_finite() && along > 0.0, "{along}");
+}
+
+/// B on two particles and −B between them is the same in one piece and in three, whichever way round the pieces stand.
+#[test]
+fn a_difference_is_three_blocks() {
+    let mut rods = TREE.to_vec();
+    rods.extend([(2, 5), (5, 8), (6, 9), (10, 8)]);
+    let (system, _) = system(&rods, |_| {});
+    let id = ParticleId;
+    let add = |pieces: &[(usize, usize, Stiffness<D>)], signed: bool| {
+        let mut matrix = Matrix::new(&system);
+        for &(a, b, piece) in pieces {
+            matrix.add(matrix.graph.place(id(a), id(b)), &piece, signed);
+        }
+        (matrix.diagonal, matrix.coupling)
+    };
+    let mut numbers = Numbers(5);
+    for (a, b) in [(4, 5), (5, 2), (8, 5), (0, 1)] {
+        let any: Block<D> = [[numbers.next(); D]; D].map(|row| row.map(|x| x * numbers.next()));
+        let symmetric: Block<D> = std::array::from_fn(|i| std::array::from_fn(|j| -any[i][j].abs() - any[j][i].abs()));
+        let minus = symmetric.map(|row| row.map(|x| -x));
+        let difference = add(&[(a, b, Stiffness::Difference(symmetric))], true);
+        assert!(difference.0.iter().any(|&x| x != 0.0));
+        for piece in [Stiffness::Definite, Stiffness::Indefinite] {
+            let three = add(&[(a, a, piece(symmetric)), (b, b, piece(symmetric)), (a, b, piece(minus))], true);
+            assert_eq!(three, difference, "{a}, {b}");
+            assert_eq!(add(&[(a, b, piece(any))], true), add(&[(b, a, piece(transposed(&any)))], true), "{a}, {b}");
+        }
+        // Where only what is known to be positive counts, a negative trace tells, and an unknown sign is left out.
+        let nothing = add(&[], false);
+        assert_eq!(add(&[(a, b, Stiffness::Difference(symmetric))], false), nothing);
+        assert_eq!(add(&[(b, b, Stiffness::Indefinite(minus))], false), nothing);
+        let definite = [(b, b, Stiffness::Definite(minus))];
+        assert_eq!(add(&definite, false), add(&definite, true));
+    }
 }
