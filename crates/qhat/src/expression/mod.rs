@@ -46,8 +46,9 @@ pub const MAX_BYTES: usize = 4096;
 pub const MAX_NODES: usize = 512;
 /// Different names of particles and parameters.
 pub const MAX_NAMES: usize = 64;
-/// Brackets, signs and powers open at once: parsing recurses so deep, and a thread in a browser has a stack of 1 MB.
-pub const MAX_DEPTH: usize = 64;
+/// Brackets, signs and powers open at once. Parsing recurses so deep: unoptimised, 64 with a summand and a factor before each bracket
+/// overflowed a stack of 512 kB and 32 fit; a page has 1 MB.
+pub const MAX_DEPTH: usize = 32;
 /// Scalar operations after points are taken apart: what 512 nodes of volumes could grow to is cut here, at 64 kB of stack.
 pub const MAX_INSTRUCTIONS: usize = 2048;
 /// Up to this integer exponent a power is a product, of at most 20 factors.
