@@ -491,7 +491,7 @@ fn limits_hold() {
     assert_eq!(message(&factors), format!("the expression takes more than {MAX_INSTRUCTIONS} operations on numbers"));
 }
 
-/// The deepest texts that are allowed fit a small stack also where nothing is optimised: a browser's is 1 MB.
+/// The deepest texts that are allowed fit half the stack of a page, 1 MB; with CARGO_PROFILE_DEV_OPT_LEVEL=0, too.
 #[test]
 fn the_deepest_text_fits_a_small_stack() {
     let deepest = [
