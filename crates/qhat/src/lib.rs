@@ -35,6 +35,7 @@
 #![allow(non_snake_case)]
 
 pub mod constraint;
+pub mod expression;
 pub mod force;
 pub mod linalg;
 
@@ -58,6 +59,7 @@ mod threads;
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm};
 pub use ensemble::step_all;
 pub use error::{BuildError, SettingsError, StepError};
+pub use expression::{Expression, ExpressionError, Purpose, Scope};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
