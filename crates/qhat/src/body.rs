@@ -78,8 +78,9 @@ impl Body {
             2 => norm(area(0, 1)),
             _ => dot(area(0, 1), unit[2]).abs(),
         };
-        // Not a number where an edge has no length.
-        if !(volume * volume > FLAT) {
+        // Not a number where an edge has no length, which is not above anything.
+        let is_full = volume * volume > FLAT;
+        if !is_full {
             return Err(BodyError::FlatEdges);
         }
         // e/√12 is half the edge, drawn in by √3.
@@ -95,7 +96,8 @@ impl Body {
         check(mass, &corners)?;
         let [a, b, c] = corners;
         let (u, v) = (minus(b, a), minus(c, a));
-        if !(norm(cross(u, v)) > FLAT.sqrt() * norm(u) * norm(v)) {
+        let is_full = norm(cross(u, v)) > FLAT.sqrt() * norm(u) * norm(v);
+        if !is_full {
             return Err(BodyError::FlatEdges);
         }
         let middle = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k]);
