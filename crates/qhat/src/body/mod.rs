@@ -23,9 +23,12 @@
 //! What is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so g_k = e_k/√12. A
 //! triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
 
+mod factor;
+
 use crate::error::BodyError;
 use crate::point::{add, dot, minus, norm, scaled};
 use crate::system::ParticleId;
+use factor::factor;
 
 /// What is thinner than this, relative to its extent squared, is taken as flat. The moments then change by as little, and a
 /// simplex as thin as that would have rods that double precision cannot tell apart.
@@ -221,43 +224,6 @@ fn check<'a>(mass: f64, numbers: impl IntoIterator<Item = &'a [f64; 3]>) -> Resu
         return Err(BodyError::NotFinite);
     }
     if mass > 0.0 && mass.is_finite() { Ok(()) } else { Err(BodyError::Mass(mass)) }
-}
-
-/// The columns of G, as many as there are independent: Cholesky's method, the largest pivot first, on S/m [m²].
-fn factor(mut S: [[f64; 3]; 3]) -> Result<Vec<[f64; 3]>, BodyError> {
-    let scale = (0..3).map(|i| S[i][i].abs()).fold(0.0, f64::max);
-    let mut g = Vec::new();
-    let mut left = vec![0, 1, 2];
-    while let Some(&pivot) = left.iter().max_by(|&&i, &&j| S[i][i].total_cmp(&S[j][j])) {
-        let lowest = left.iter().map(|&i| S[i][i]).fold(f64::INFINITY, f64::min);
-        if lowest < -FLAT * scale {
-            return Err(BodyError::Inertia);
-        }
-        let largest = S[pivot][pivot];
-        if largest <= FLAT * scale {
-            // What is left of a tensor that a body has is as small as its diagonal.
-            let rest = left.iter().flat_map(|&i| left.iter().map(move |&j| S[i][j].abs())).fold(0.0, f64::max);
-            return match g.len() {
-                _ if rest > FLAT * scale => Err(BodyError::Inertia),
-                0 => Err(BodyError::NoExtent),
-                _ => Ok(g),
-            };
-        }
-        left.retain(|&i| i != pivot);
-        let root = largest.sqrt();
-        let column: [f64; 3] = std::array::from_fn(|i| match () {
-            () if i == pivot => root,
-            () if left.contains(&i) => S[i][pivot] / root,
-            () => 0.0,
-        });
-        for &i in &left {
-            for &j in &left {
-                S[i][j] -= column[i] * column[j];
-            }
-        }
-        g.push(column);
-    }
-    Ok(g)
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
