@@ -52,7 +52,7 @@ mod tree;
 
 pub use error::{SceneError, SceneErrors};
 pub use load::{Format, load, load_bytes};
-pub use model::{Axis, Expect, Motion, Period, Tension};
+pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub use scene::Scene;
 pub use schema::json_schema;
 pub use shipped::{Shipped, shipped};

@@ -84,7 +84,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 12] = [
+const BETWEEN_KEYS: [&str; 18] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -97,6 +97,12 @@ const BETWEEN_KEYS: [&str; 12] = [
     "must begin with the lower end",
     "no particles",
     "start at the same place",
+    "the edges of a body",
+    "the particles of a body",
+    "number in the plane",
+    "a body without a moment of inertia",
+    "the mass of a body",
+    "none of its principal moments",
 ];
 
 #[test]

@@ -63,6 +63,33 @@ fn every_scene_shows_what_it_says() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// A pendulum let go from the horizontal under explicit Euler, which gains energy and leaves the circle: each of these is
+/// untrue of it, and found to be.
+#[test]
+fn an_expectation_that_does_not_hold_is_found() {
+    let pendulum = shipped().iter().find(|scene| scene.name == "pendulum").unwrap();
+    let (text, _) = pendulum.text.split_once("[expect]").unwrap();
+    let text = text.replace("duration = 10.0", "duration = 1.0\nintegrator = \"euler\"");
+    for (untrue, found) in [
+        ("degrees_of_freedom = 2", "degrees of freedom"),
+        ("max_residual = 1e-6", "a row was off"),
+        ("energy_never_rises = true", "the energy rose"),
+        ("energy_error = 1e-9", "energy error"),
+        ("at_end = [{ particle = 'bob', axis = 'y', value = 0.5, tolerance = 0.1 }]", "bob ended at"),
+        ("speed_at_end = [{ particle = 'bob', value = 0.0, tolerance = 1.0 }]", "m/s, expected 0"),
+        ("motion = [{ particle = 'bob', axis = 'y', within = [-0.5, 0.1] }]", "bob went from"),
+        ("tension = [{ rod = 'pivot-bob', value = -100.0, tolerance = 1.0 }]", "tension"),
+        ("period = { particle = 'bob', axis = 'x', value = 1.0, tolerance = 0.1 }", "period"),
+    ] {
+        let text = format!("{text}\n[expect]\n{untrue}\n");
+        let scene = load(&text, untrue, Format::Toml).unwrap_or_else(|errors| panic!("{errors}"));
+        let failures = expectations::failures(&scene, LONG);
+        assert!(failures.len() == 1 && failures[0].contains(found), "{untrue}: {failures:?}");
+    }
+    let silent = load(&text, "nothing expected", Format::Toml).unwrap();
+    assert_eq!(expectations::failures(&silent, LONG), Vec::<String>::new());
+}
+
 /// Runs for a duration with these menus; the time at which it fell apart.
 fn falls_apart(scene: &Scene, feedback: Feedback, duration: f64) -> Option<f64> {
     let mut simulation = scene.simulation().unwrap();

@@ -39,6 +39,7 @@ pub mod expression;
 pub mod force;
 pub mod linalg;
 
+mod body;
 mod ensemble;
 mod error;
 mod integrate;
@@ -56,9 +57,10 @@ mod system;
 mod terms;
 mod threads;
 
+pub use body::Body;
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm};
 pub use ensemble::step_all;
-pub use error::{BuildError, SettingsError, StepError};
+pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};

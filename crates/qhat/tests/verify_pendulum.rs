@@ -5,47 +5,7 @@ mod systems;
 use qhat::{Integrator, Settings, Simulation};
 use systems::G;
 use systems::dense::assert_close;
-
-/// T = 4 √(L/g) K(sin(θ₀/2)) = 2π √(L/g) / agm(1, cos(θ₀/2)), L = 1 m.
-fn period(amplitude: f64) -> f64 {
-    let (mut a, mut b) = (1.0, libm::cos(0.5 * amplitude));
-    for _ in 0..10 {
-        (a, b) = (0.5 * (a + b), (a * b).sqrt()); // converges quadratically
-    }
-    2.0 * std::f64::consts::PI / (G.sqrt() * a)
-}
-
-/// The mean period over `count` swings: passages through the vertical from left to right, located inside a frame by the
-/// cubic through x and ẋ at both ends (error h⁴/384 of the fourth derivative, below 1e-12 s here).
-fn measured(mut simulation: Simulation, count: usize) -> f64 {
-    let mut passages: Vec<f64> = Vec::new();
-    let look = |s: &Simulation| (s.state().time(), s.state().positions()[2], s.state().velocities()[2]);
-    let mut before = look(&simulation);
-    while passages.len() <= count {
-        simulation.step().unwrap();
-        let after = look(&simulation);
-        if before.1 < 0.0 && after.1 >= 0.0 {
-            passages.push(zero(before, after));
-        }
-        before = after;
-    }
-    (passages[count] - passages[0]) / count as f64
-}
-
-/// Where the cubic Hermite polynomial between two moments (t, x, ẋ) passes zero, by bisection.
-fn zero((t0, x0, v0): (f64, f64, f64), (t1, x1, v1): (f64, f64, f64)) -> f64 {
-    let h = t1 - t0;
-    let x = |s: f64| {
-        let (r, left, right) = (1.0 - s, h * s * (1.0 - s) * (1.0 - s), h * s * s * (1.0 - s));
-        x0 * r * r * (1.0 + 2.0 * s) + left * v0 + x1 * s * s * (3.0 - 2.0 * s) - right * v1
-    };
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if x(middle) < 0.0 { low = middle } else { high = middle }
-    }
-    t0 + low * h
-}
+use systems::swing;
 
 fn simulation(angle: f64, settings: Settings) -> Simulation {
     let (system, state) = systems::pendulum(-angle);
@@ -55,13 +15,14 @@ fn simulation(angle: f64, settings: Settings) -> Simulation {
 #[test]
 fn period_is_that_of_the_elliptic_integral() {
     for amplitude in [0.1, 1.0, 2.0, 3.0] {
+        let period = swing::period(1.0, amplitude);
         // RK4: the phase is good to (hω)⁴/120 < 1e-12 with ω up to 6 rad/s, but the circle is left by errors of that size
         // a step which grow with t²: below 1e-10 over five swings, and more where the bob nearly stands still on top.
         let rk4 = simulation(amplitude, systems::settings(Integrator::Rk4, 2.5e-4));
-        assert_close("rk4", measured(rk4, 5), period(amplitude), if amplitude < 2.5 { 1e-10 } else { 1e-8 });
+        assert_close("rk4", swing::measured(rk4, 2, 5), period, if amplitude < 2.5 { 1e-10 } else { 1e-8 });
         // RATTLE: (hω)²/24 of the period, ω² at most 4 g/L = 39/s²: 2e-6 of it at h = 1 ms.
         let rattle = simulation(amplitude, systems::settings(Integrator::Rattle, 1e-3));
-        assert_close("rattle", measured(rattle, 5), period(amplitude), 3e-6 * period(amplitude));
+        assert_close("rattle", swing::measured(rattle, 2, 5), period, 3e-6 * period);
     }
 }
 

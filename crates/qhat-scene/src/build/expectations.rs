@@ -21,6 +21,13 @@ impl Assembly<'_, '_, '_> {
                 }
             }
         }
+        for (index, end) in expect.at_end.iter().enumerate() {
+            self.check_watched(&end.particle, end.axis, place.key("at_end").item(index));
+        }
+        for (index, end) in expect.speed_at_end.iter().enumerate() {
+            let place = place.key("speed_at_end").item(index);
+            self.particle(&Id(end.particle.clone()), place.key("particle"));
+        }
         for (index, tension) in expect.tension.iter().enumerate() {
             if !self.constraint_names.contains(&tension.rod) {
                 let message = format!("there is no rod {}", self.report.quoted(&tension.rod));

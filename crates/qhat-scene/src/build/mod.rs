@@ -1,6 +1,7 @@
 //! From the model to the engine's System and State: ids resolved, defaults filled in, and all that one key says about
 //! another checked.
 
+mod bodies;
 mod connections;
 mod expectations;
 mod generated;
@@ -76,13 +77,15 @@ impl Assembly<'_, '_, '_> {
         self.take_constraint_names(&document.constraints);
         self.add_particles(&document.particles);
         let unlinked = self.add_generated(&document.generate)?;
-        if document.particles.is_empty() && document.generate.is_empty() {
-            let help = "add `[[particles]]` with an `id` and `at`, or `[[generate]]`".to_owned();
+        let unheld = self.add_bodies(&document.bodies)?;
+        if document.particles.is_empty() && document.generate.is_empty() && document.bodies.is_empty() {
+            let help = "add `[[particles]]` with an `id` and `at`, `[[generate]]` or `[[bodies]]`".to_owned();
             self.report.error(0..0, "the scene has no particles", Some(help));
             return None;
         }
         self.add_constraints(&document.constraints);
         self.add_links(&unlinked);
+        self.hold_bodies(&unheld);
         self.add_springs(&document.springs);
         self.add_loads(&document.loads);
         if let Some(gravity) = &document.forces.gravity {

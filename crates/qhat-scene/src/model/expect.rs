@@ -17,12 +17,21 @@ pub struct Expect {
     /// The most that may be missing in the balance of energy over the duration, relative to the largest kinetic energy; above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_error: Option<f64>,
+    /// The most that a rigid row may be off at any frame of the duration, relative to its own scale (a rod's length); above 0.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub max_residual: Option<f64>,
+    /// Whether kinetic and potential energy together never rise from one frame to the next.
+    pub energy_never_rises: bool,
     /// The period of a swing.
     pub period: Option<Period>,
     /// Where particles go.
     pub motion: Vec<Motion>,
     /// The tension of rods at the end of the duration.
     pub tension: Vec<Tension>,
+    /// Where particles are at the end of the duration.
+    pub at_end: Vec<AtEnd>,
+    /// How fast particles are at the end of the duration.
+    pub speed_at_end: Vec<SpeedAtEnd>,
 }
 
 /// The period of a swing: the mean time from one upward crossing of a coordinate's level to the next.
@@ -69,6 +78,35 @@ pub struct Tension {
     /// Its tension [N]: positive where it pulls its ends together.
     pub value: f64,
     /// How far off it may be [N], above 0.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub tolerance: f64,
+}
+
+/// A coordinate of a particle at the end.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtEnd {
+    /// The id of the particle that is watched.
+    pub particle: String,
+    /// The coordinate that is watched.
+    pub axis: Axis,
+    /// Where it is [m].
+    pub value: f64,
+    /// How far off it may be [m], above 0.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub tolerance: f64,
+}
+
+/// The speed of a particle at the end.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpeedAtEnd {
+    /// The id of the particle that is watched.
+    pub particle: String,
+    /// Its speed [m/s], 0 or more.
+    #[schemars(range(min = 0.0))]
+    pub value: f64,
+    /// How far off it may be [m/s], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub tolerance: f64,
 }

@@ -1,6 +1,7 @@
 //! The scene file as Rust types: the one list of its keys. The JSON Schema is made from them, the checker follows that
 //! schema, and serde fills them. The first sentence on a key is what help and schema say about it.
 
+pub(crate) mod body;
 mod constraint;
 mod expect;
 pub(crate) mod generate;
@@ -8,7 +9,7 @@ mod step;
 mod value;
 
 pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
-pub use expect::{Axis, Expect, Motion, Period, Tension};
+pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use generate::Generate;
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
@@ -57,6 +58,9 @@ pub(crate) struct Document {
     /// Particles by the dozen, with what connects them.
     #[serde(default)]
     pub(crate) generate: Vec<Generate>,
+    /// Rigid bodies of particles and rods.
+    #[serde(default)]
+    pub(crate) bodies: Vec<body::Body>,
     /// What the scene must show; a test holds it to that.
     #[serde(default)]
     pub(crate) expect: Option<Expect>,

@@ -1,7 +1,7 @@
 //! Runs a scene and tells which of its expectations do not hold; what each means is in docs/scene-file.md.
 
 use qhat::{ParticleId, Simulation};
-use qhat_scene::{Axis, Expect, Scene};
+use qhat_scene::{AtEnd, Axis, Expect, Scene, SpeedAtEnd};
 
 /// Particles up to which lengths are held for long; a larger scene, at tens of milliseconds a frame, for its own duration.
 const MOST_FOR_LONG: usize = 2000;
@@ -22,6 +22,7 @@ pub(crate) fn failures(scene: &Scene, long: f64) -> Vec<String> {
     let mut course = Course::default();
     course.note(&simulation, &expect);
     let mut length_error = 0.0_f64;
+    let mut residual = residual_now(&mut simulation, &expect);
     for frame in 1..=frames(end) {
         match simulation.step() {
             Ok(report) => length_error = length_error.max(report.max_relative_length_error),
@@ -32,16 +33,22 @@ pub(crate) fn failures(scene: &Scene, long: f64) -> Vec<String> {
         }
         if frame <= frames(scene.duration) {
             course.note(&simulation, &expect);
+            residual = residual.max(residual_now(&mut simulation, &expect));
         }
         if frame == frames(scene.duration) {
             check_energy(&simulation, &expect, &mut failures);
             check_tension(&mut simulation, &expect, &mut failures);
+            check_end(&simulation, &expect, &mut failures);
         }
     }
     if let Some(most) = expect.max_relative_length_error
         && length_error > most
     {
         failures.push(format!("a rod was off its length by {length_error:e}, expected at most {most:e}"));
+    }
+    if expect.max_residual.is_some_and(|most| residual > most) {
+        failures
+            .push(format!("a row was off by {residual:e} of its scale, expected at most {:?}", expect.max_residual));
     }
     course.check(&expect, &mut failures);
     failures
@@ -89,12 +96,46 @@ fn check_tension(simulation: &mut Simulation, expect: &Expect, failures: &mut Ve
     }
 }
 
+fn check_end(simulation: &Simulation, expect: &Expect, failures: &mut Vec<String>) {
+    for AtEnd { particle, axis, value, tolerance } in &expect.at_end {
+        let found = coordinate(simulation, particle, *axis);
+        if (found - value).abs() > *tolerance {
+            failures.push(format!("{particle} ended at {found} m along {axis:?}, expected {value}"));
+        }
+    }
+    for SpeedAtEnd { particle, value, tolerance } in &expect.speed_at_end {
+        let d = simulation.system().dimension();
+        let velocity = &simulation.state().velocities()[index(simulation, particle) * d..][..d];
+        let found = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if (found - value).abs() > *tolerance {
+            failures.push(format!("{particle} ended at {found} m/s, expected {value}"));
+        }
+    }
+}
+
+/// max |C| over the row's own scale over the rigid rows at this frame; 0 where nobody asks, as it costs a solve.
+fn residual_now(simulation: &mut Simulation, expect: &Expect) -> f64 {
+    if expect.max_residual.is_none() {
+        return 0.0;
+    }
+    let residual = simulation.terms().residual;
+    let system = simulation.system();
+    let rigid = (0..residual.len()).filter(|&row| system.is_rigid(row));
+    rigid.map(|row| residual[row].abs() / system.row_scales()[row]).fold(0.0, f64::max)
+}
+
+/// A rise of the energy that counts, relative to the most that moves to and fro between its kinds. Rods are held to 1e-10 of
+/// their length, so that a projection may lift a weight by that much; ten times as much is more than that explains.
+const RISE: f64 = 1e-9;
+
 /// Where the watched coordinates were, frame by frame.
 #[derive(Default)]
 struct Course {
     times: Vec<f64>,
     swing: Vec<f64>,
     motions: Vec<Vec<f64>>,
+    /// T and V [J].
+    energies: Vec<(f64, f64)>,
 }
 
 impl Course {
@@ -102,6 +143,10 @@ impl Course {
         self.times.push(simulation.state().time());
         if let Some(period) = &expect.period {
             self.swing.push(coordinate(simulation, &period.particle, period.axis) - period.level);
+        }
+        if expect.energy_never_rises {
+            let energy = simulation.energy();
+            self.energies.push((energy.kinetic, energy.potential));
         }
         self.motions.resize(expect.motion.len(), Vec::new());
         for (course, motion) in self.motions.iter_mut().zip(&expect.motion) {
@@ -116,6 +161,9 @@ impl Course {
                 found => failures.push(format!("period {found:?} s, expected {} s", period.value)),
             }
         }
+        if let Some((rise, time)) = self.largest_rise().filter(|(rise, _)| *rise > RISE) {
+            failures.push(format!("the energy rose by {rise:e} of its scale before t = {time} s"));
+        }
         for (course, motion) in self.motions.iter().zip(&expect.motion) {
             let low = course.iter().copied().fold(f64::INFINITY, f64::min);
             let high = course.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -125,6 +173,19 @@ impl Course {
                 failures.push(format!("{} went from {low} to {high} along {:?}", motion.particle, motion.axis));
             }
         }
+    }
+
+    /// The largest rise of T + V from one frame to the next, over the largest T or change of V, and when it ended.
+    fn largest_rise(&self) -> Option<(f64, f64)> {
+        let bounds = |part: fn(&(f64, f64)) -> f64| {
+            let values = self.energies.iter().map(part);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let (kinetic, potential) = (bounds(|energy| energy.0), bounds(|energy| energy.1));
+        let scale = kinetic.1.max(potential.1 - potential.0).max(f64::MIN_POSITIVE);
+        let rise = |pair: &[(f64, f64)]| ((pair[1].0 + pair[1].1) - (pair[0].0 + pair[0].1)) / scale;
+        let rises = self.energies.windows(2).map(rise).zip(&self.times[1..]);
+        rises.map(|(rise, &time)| (rise, time)).max_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
     /// Mean time between upward crossings of the level, each found on the line between two frames.
@@ -143,7 +204,10 @@ impl Course {
 }
 
 fn coordinate(simulation: &Simulation, particle: &str, axis: Axis) -> f64 {
-    let system = simulation.system();
-    let index = system.particle_names().iter().position(|name| name == particle).expect("load checks the names");
-    simulation.state().positions()[index * system.dimension() + axis.index()]
+    simulation.state().positions()[index(simulation, particle) * simulation.system().dimension() + axis.index()]
+}
+
+fn index(simulation: &Simulation, particle: &str) -> usize {
+    let mut names = simulation.system().particle_names().iter();
+    names.position(|name| name == particle).expect("load checks the names")
 }

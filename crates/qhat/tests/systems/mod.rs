@@ -4,6 +4,7 @@
 
 pub mod dense;
 pub mod random;
+pub mod swing;
 
 use qhat::{Dimension, Distance, Feedback, Gravity, Integrator, Nail, Particle, ParticleId, Settings, State, System};
 

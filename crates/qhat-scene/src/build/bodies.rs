@@ -1,0 +1,71 @@
+//! `[[bodies]]`: their particles after those of `[[generate]]`, their rods after its links.
+
+use super::{Assembly, MOST_PARTICLES};
+use crate::model::body::{Body, Common};
+use qhat::{Distance, Particle, ParticleId};
+use std::ops::Range;
+
+/// The rods of a body that are still to be added.
+pub(super) struct Unheld {
+    body: qhat::Body,
+    /// The number of its first particle.
+    first: usize,
+    prefix: String,
+}
+
+impl Assembly<'_, '_, '_> {
+    /// Adds the particles of all bodies; `None` when one of them cannot be, so that references to it would mislead.
+    pub(super) fn add_bodies(&mut self, bodies: &[Body]) -> Option<Vec<Unheld>> {
+        let mut unheld = Vec::new();
+        for (index, body) in bodies.iter().enumerate() {
+            let place = self.tree.key("bodies").item(index);
+            match (body.make(self.dimension), body.spin(self.dimension)) {
+                (Ok(made), Ok(spin)) => unheld.extend(self.add_body(body, made, spin, place.span.clone())),
+                (Err(refusal), _) | (_, Err(refusal)) => {
+                    self.report.error(place.key(refusal.key).span.clone(), refusal.message, Some(refusal.help.into()));
+                }
+            }
+        }
+        (unheld.len() == bodies.len()).then_some(unheld)
+    }
+
+    fn add_body(&mut self, body: &Body, made: qhat::Body, spin: [f64; 3], place: Range<usize>) -> Option<Unheld> {
+        let first = self.positions.len() / self.dimension;
+        if (first + made.points.len()) as u64 > MOST_PARTICLES {
+            let message = format!("with this body the scene has more than {MOST_PARTICLES} particles");
+            self.report.error(place, message, Some("ask for fewer particles".into()));
+            return None;
+        }
+        let Common { prefix, velocity, .. } = body.common();
+        let velocities = made.velocities(velocity, spin);
+        for (i, ((x, v), &mass)) in made.points.iter().zip(&velocities).zip(&made.masses).enumerate() {
+            if !x.iter().chain(v).all(|number| number.is_finite()) {
+                let message = "the places or velocities of this body's particles are not finite numbers";
+                self.report.error(place, message, Some("use smaller numbers".into()));
+                return None;
+            }
+            let name = format!("{prefix}{i}");
+            let (position, velocity) = (x[..self.dimension].to_vec(), v[..self.dimension].to_vec());
+            self.positions.extend(&position);
+            let added = self.builder.particle(Particle { name: name.clone(), position, velocity, mass, fixed: false });
+            if let Err(origin) = self.ids.take(&name, added, place.clone()) {
+                let message = format!("this body makes a particle {}, but that id is taken", self.report.quoted(&name));
+                let line = self.report.line_of(origin.start);
+                self.report.error(place, message, Some(format!("the first is in line {line}; use another `prefix`")));
+                return None;
+            }
+        }
+        Some(Unheld { body: made, first, prefix: prefix.to_owned() })
+    }
+
+    /// Adds the rods of all bodies.
+    pub(super) fn hold_bodies(&mut self, unheld: &[Unheld]) {
+        for Unheld { body, first, prefix } in unheld {
+            for (rod, &[a, b]) in body.rods.iter().enumerate() {
+                let name = self.free_constraint_name(format!("{prefix}{a}-{prefix}{b}"));
+                let [a, b] = [a, b].map(|end| ParticleId(first + end));
+                self.builder.constraint(name, Distance::new(a, b, body.length(rod)));
+            }
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Bodies: a rigid body as a few particles and the rods between them, which move as it does.
+//!
+//! In Newton's and Euler's equations the matter of a rigid body appears in three sums only,
+//!
+//! ```text
+//! m = Σ m_i,   c = Σ m_i x_i / m,   S = Σ m_i (x_i − c)(x_i − c)ᵀ            kg, m, kg m²
+//! inertia tensor I = tr(S) 1 − S,   in the plane the polar moment I = tr(S)
+//! ```
+//!
+//! so two rigid systems with the same three are *equimomental*: under the same resultant and moment they move alike
+//! (E. J. Routh, *Dynamics of a System of Rigid Bodies*, Elementary Part, chapter I). It takes few particles. Let m G Gᵀ = S
+//! with r independent columns g_k, and let s_0 … s_r be the corners of a simplex in r dimensions with Σ s_i = 0 and
+//! Σ s_i s_iᵀ = (r + 1) 1:
+//!
+//! ```text
+//! r = 1:  −1, 1      r = 2:  √2 (cos 2πi/3, sin 2πi/3)      r = 3:  (1, 1, 1) (1, −1, −1) (−1, 1, −1) (−1, −1, 1)
+//! x_i = c + G s_i with m_i = m/(r + 1)   ⇒   Σ m_i (x_i − c)(x_i − c)ᵀ = m G Gᵀ = S
+//! ```
+//!
+//! The points are again the corners of a simplex. A rod along each of its edges holds it, and none repeats another: those that
+//! meet in a corner are linearly independent. A body that is flat in space has r = 2, one that is a line r = 1.
+//!
+//! What is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so g_k = e_k/√12. A
+//! triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
+
+mod factor;
+
+use crate::error::BodyError;
+use crate::point::{add, dot, minus, norm, scaled};
+use crate::system::ParticleId;
+use factor::factor;
+
+/// What is thinner than this, relative to its extent squared, is taken as flat. The moments then change by as little, and a
+/// simplex as thin as that would have rods that double precision cannot tell apart.
+const FLAT: f64 = 1e-12;
+
+/// Particles and rods that move as a rigid body does. In two dimensions z is 0 and rotations are about z.
+///
+/// ```
+/// use qhat::{Body, Dimension, Distance, Particle, System};
+/// let brick = Body::block(2.0, [0.0; 3], &[[0.2, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.05]])?;
+/// assert_eq!((brick.points.len(), brick.rods.len()), (4, 6));
+///
+/// let mut builder = System::builder(Dimension::Three);
+/// let velocities = brick.velocities([1.0, 0.0, 0.0], [0.0, 0.0, 6.0]);
+/// let ids: Vec<_> = (0..4)
+///     .map(|i| Particle::at(format!("brick{i}"), brick.points[i]).with_mass(brick.masses[i]).with_velocity(velocities[i]))
+///     .map(|particle| builder.particle(particle))
+///     .collect();
+/// for (k, &[a, b]) in brick.rods.iter().enumerate() {
+///     builder.constraint(format!("rod{k}"), Distance::new(ids[a], ids[b], brick.length(k)));
+/// }
+/// # builder.build().unwrap();
+/// # Ok::<(), qhat::BodyError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// x_i, where its particles are [m].
+    pub points: Vec<[f64; 3]>,
+    /// m_i, their masses [kg], positive.
+    pub masses: Vec<f64>,
+    /// Which two of them each rod connects.
+    pub rods: Vec<[usize; 2]>,
+}
+
+impl Body {
+    /// What is uniform over the edges e_k [m] around a centre [m]: a thin bar (one edge), a plate (two) or a block (three),
+    /// not necessarily with right angles. Two particles, three or four; a bar in space has, as it should, no spin about itself.
+    ///
+    /// # Errors
+    /// A mass [kg] that is not positive; numbers that are not finite; edges that do not span as many dimensions as they are.
+    pub fn block(mass: f64, centre: [f64; 3], edges: &[[f64; 3]]) -> Result<Self, BodyError> {
+        check(mass, edges.iter().chain([&centre]))?;
+        if !(1..=3).contains(&edges.len()) {
+            return Err(BodyError::EdgeCount(edges.len()));
+        }
+        let unit: Vec<[f64; 3]> = edges.iter().map(|&edge| scaled(1.0 / norm(edge), edge)).collect();
+        let area = |a: usize, b: usize| cross(unit[a], unit[b]);
+        let volume = match edges.len() {
+            1 => norm(unit[0]),
+            2 => norm(area(0, 1)),
+            _ => dot(area(0, 1), unit[2]).abs(),
+        };
+        // Not a number where an edge has no length, which is not above anything.
+        let is_full = volume * volume > FLAT;
+        if !is_full {
+            return Err(BodyError::FlatEdges);
+        }
+        // e/√12 is half the edge, drawn in by √3.
+        let g: Vec<[f64; 3]> = edges.iter().map(|&edge| scaled(1.0 / 12.0_f64.sqrt(), edge)).collect();
+        Body::simplex(mass, centre, &g)
+    }
+
+    /// A uniform triangular plate with these corners [m]: a third of its mass [kg] at the middle of each side.
+    ///
+    /// # Errors
+    /// A mass that is not positive; numbers that are not finite; corners in a line.
+    pub fn triangle(mass: f64, corners: [[f64; 3]; 3]) -> Result<Self, BodyError> {
+        check(mass, &corners)?;
+        let [a, b, c] = corners;
+        let (u, v) = (minus(b, a), minus(c, a));
+        let is_full = norm(cross(u, v)) > FLAT.sqrt() * norm(u) * norm(v);
+        if !is_full {
+            return Err(BodyError::FlatEdges);
+        }
+        let middle = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k]);
+        Body::complete(vec![middle(a, b), middle(b, c), middle(c, a)], vec![mass / 3.0; 3])
+    }
+
+    /// A body in space of which its mass [kg], centre [m] and inertia tensor about the centre [kg m²] are known.
+    ///
+    /// # Errors
+    /// A mass that is not positive; numbers that are not finite; a tensor that is not symmetric or that no body has: a
+    /// principal moment above the sum of the others, or all zero.
+    pub fn from_inertia(mass: f64, centre: [f64; 3], inertia: [[f64; 3]; 3]) -> Result<Self, BodyError> {
+        check(mass, inertia.iter().chain([&centre]))?;
+        let trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
+        let off = |i: usize, j: usize| (inertia[i][j] - inertia[j][i]).abs();
+        // Sums that came to the two entries in different order differ by rounding.
+        if [off(0, 1), off(0, 2), off(1, 2)].iter().any(|&off| off > 1e-12 * trace.abs()) {
+            return Err(BodyError::NotSymmetric);
+        }
+        let second = |i: usize, j: usize| if i == j { 0.5 * trace - inertia[i][j] } else { -inertia[i][j] };
+        let S = std::array::from_fn(|i| std::array::from_fn(|j| second(i, j) / mass));
+        Body::simplex(mass, centre, &factor(S)?)
+    }
+
+    /// A body in the plane of which its mass [kg], centre [m] and moment of inertia about the centre [kg m²] are known: three
+    /// particles at the radius of gyration.
+    ///
+    /// # Errors
+    /// A mass or moment of inertia that is not positive; numbers that are not finite.
+    pub fn in_plane(mass: f64, centre: [f64; 2], inertia: f64) -> Result<Self, BodyError> {
+        let centre = [centre[0], centre[1], 0.0];
+        check(mass, [&centre, &[inertia, 0.0, 0.0]])?;
+        if inertia <= 0.0 {
+            return Err(BodyError::NoExtent);
+        }
+        let g = (0.5 * inertia / mass).sqrt();
+        Body::simplex(mass, centre, &[[g, 0.0, 0.0], [0.0, g, 0.0]])
+    }
+
+    /// A uniform thin bar in the plane with a particle at each end [m], so that it can be nailed there.
+    ///
+    /// Three particles in its line (m/6, 4m/6, m/6) have its moments too, but rods in one line cannot hold them: they repeat each
+    /// other and leave the middle free to move sideways. Here the middle is two particles at ±w beside the line, and w and the
+    /// masses are such that the moment of inertia is right, which is all that the plane asks for:
+    /// 2 · 11/72 · (L/2)² + 2 · 25/72 · (L/10)² = L²/12. Particles 0 and 1 are the ends.
+    ///
+    /// # Errors
+    /// A mass [kg] that is not positive; numbers that are not finite; ends at the same place.
+    pub fn bar_in_plane(mass: f64, ends: [[f64; 2]; 2]) -> Result<Self, BodyError> {
+        let [a, b] = ends.map(|end| [end[0], end[1], 0.0]);
+        check(mass, [&a, &b])?;
+        let along = minus(b, a);
+        let side = |w: f64| std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k] + w * [-along[1], along[0], 0.0][k]);
+        let [end, middle] = [11.0 / 72.0 * mass, 25.0 / 72.0 * mass];
+        let body = Body {
+            points: vec![a, b, side(0.1), side(-0.1)],
+            masses: vec![end, end, middle, middle],
+            // Four points in the plane need five rods; the sixth, between the two in the middle, would repeat them.
+            rods: vec![[0, 1], [0, 2], [2, 1], [0, 3], [3, 1]],
+        };
+        body.told_apart()
+    }
+
+    /// c [m].
+    pub fn centre(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (&point, &mass) in self.points.iter().zip(&self.masses) {
+            add(&mut sum, ParticleId(0), scaled(mass, point));
+        }
+        scaled(1.0 / self.masses.iter().sum::<f64>(), sum)
+    }
+
+    /// v_i = v + ω × (x_i − c) [m/s], where c moves with v [m/s] and the body turns with ω [rad/s].
+    pub fn velocities(&self, v: [f64; 3], omega: [f64; 3]) -> Vec<[f64; 3]> {
+        let c = self.centre();
+        let turning = self.points.iter().map(|&x| cross(omega, minus(x, c)));
+        turning.map(|turning| std::array::from_fn(|k| v[k] + turning[k])).collect()
+    }
+
+    /// The length of a rod [m].
+    pub fn length(&self, rod: usize) -> f64 {
+        let [a, b] = self.rods[rod];
+        norm(minus(self.points[a], self.points[b]))
+    }
+
+    /// x_i = c + G s_i.
+    fn simplex(mass: f64, c: [f64; 3], g: &[[f64; 3]]) -> Result<Self, BodyError> {
+        // √2 (cos 2πi/3, sin 2πi/3) in roots.
+        let (half, root) = (0.5_f64.sqrt(), 1.5_f64.sqrt());
+        let corners: &[[f64; 3]] = match g.len() {
+            1 => &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+            2 => &[[2.0 * half, 0.0, 0.0], [-half, root, 0.0], [-half, -root, 0.0]],
+            _ => &[[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
+        };
+        let place = |s: &[f64; 3]| {
+            let component = |k: usize| g.iter().zip(s).fold(c[k], |sum, (g, s)| sum + s * g[k]);
+            std::array::from_fn(component)
+        };
+        Body::complete(corners.iter().map(place).collect(), vec![mass / corners.len() as f64; corners.len()])
+    }
+
+    /// A rod between any two.
+    fn complete(points: Vec<[f64; 3]>, masses: Vec<f64>) -> Result<Self, BodyError> {
+        let rods = (1..points.len()).flat_map(|b| (0..b).map(move |a| [a, b])).collect();
+        Body { points, masses, rods }.told_apart()
+    }
+
+    /// Itself, if its particles are still at different places after rounding.
+    fn told_apart(self) -> Result<Self, BodyError> {
+        let lengths = (0..self.rods.len()).map(|rod| self.length(rod));
+        if self.points.iter().flatten().all(|x| x.is_finite()) && lengths.into_iter().all(|length| length > 0.0) {
+            Ok(self)
+        } else {
+            Err(BodyError::Lost)
+        }
+    }
+}
+
+fn check<'a>(mass: f64, numbers: impl IntoIterator<Item = &'a [f64; 3]>) -> Result<(), BodyError> {
+    if !numbers.into_iter().flatten().all(|number| number.is_finite()) {
+        return Err(BodyError::NotFinite);
+    }
+    if mass > 0.0 && mass.is_finite() { Ok(()) } else { Err(BodyError::Mass(mass)) }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
