@@ -129,6 +129,31 @@ pub enum StepError {
         /// |C| relative to the row's scale.
         relative: f64,
     },
+    /// Contacts for which no forces or impulses were found that fit them all.
+    #[error(
+        "at t = {} s no contact forces fit: what `{constraint}` does contradicts the others (friction of this size may have no answer; lower it)", shown(*time))]
+    Jammed {
+        /// t of the last good state [s].
+        time: f64,
+        /// One of the contacts.
+        constraint: String,
+    },
+    /// So many events that there seems to be no end of them.
+    #[error("at t = {} s one frame has had {events} events, contacts that open and close; a shorter h, or less restitution, may do", shown(*time))]
+    TooManyEvents {
+        /// t of the last good state [s].
+        time: f64,
+        /// How many.
+        events: usize,
+    },
+    /// An integrator that does not find the time of an event, and a system that has events.
+    #[error("`{constraint}` opens, closes or breaks, and {integrator} cannot find when: use auto, dop853 or dopri5")]
+    NoEvents {
+        /// Which was chosen.
+        integrator: Integrator,
+        /// The first constraint that switches.
+        constraint: String,
+    },
     /// No positions that satisfy the constraints were found nearby.
     #[error("at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}", shown(*time))]
     NotSatisfied {

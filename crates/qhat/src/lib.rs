@@ -53,12 +53,15 @@ mod simulation;
 mod softness;
 mod state;
 mod stiffness;
+mod switching;
 mod system;
 mod terms;
 mod threads;
 
 pub use body::Body;
-pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm};
+pub use constraint::{
+    Barrier, Constraint, Distance, DistanceForm, Formulation, Jacobian, Limits, Nail, NailForm, Surface,
+};
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
@@ -66,7 +69,7 @@ pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
-pub use report::{Projection, Solver, StepReport, Warning};
+pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

@@ -5,8 +5,8 @@
 //! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
 //! ```
 
-use crate::constraint::Rows;
 use crate::force::Acts;
+use crate::multiplier::Equation;
 use crate::point::{Motion, block, dot, minus, norm};
 use crate::state::{State, Work};
 use crate::system::{ParticleId, System, in_dimension};
@@ -93,8 +93,9 @@ pub(crate) struct Drift {
     pub(crate) relative_length: f64,
 }
 
-/// Reads the drift off rows that were evaluated at q.
-pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, q: &[f64]) -> Drift {
+/// Reads the drift off rows that were evaluated at q; those that take no part count for nothing.
+pub(crate) fn drift<const D: usize>(system: &System, equation: &Equation, q: &[f64]) -> Drift {
+    let rows = &equation.rows;
     let mut drift = Drift::default();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
     for row in (0..rows.C.len()).filter(rigid) {
@@ -108,6 +109,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, q: &[f64]) -> 
     for named in &system.constraints {
         if let Some(rod) = named.constraint.as_rod()
             && rod.compliance == 0.0
+            && !equation.is_off(named.first_row)
         {
             let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));
             drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);

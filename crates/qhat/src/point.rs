@@ -33,6 +33,11 @@ pub(crate) fn norm<const D: usize>(a: Point<D>) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The first axis: a direction where there is none.
+pub(crate) fn first_axis<const D: usize>() -> Point<D> {
+    std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 })
+}
+
 /// The first D of three stored components (the third is 0 in two dimensions).
 #[inline(always)]
 pub(crate) fn first<const D: usize>(a: &[f64; 3]) -> Point<D> {

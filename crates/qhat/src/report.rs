@@ -29,8 +29,41 @@ pub struct StepReport {
     pub integrator: Integrator,
     /// By which path the constraints were solved.
     pub solver: Solver,
+    /// Contacts that opened, closed, slipped or stuck, and what broke, in their order.
+    pub events: Vec<Event>,
     /// What a user should know.
     pub warnings: Vec<Warning>,
+}
+
+/// Something that happened at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// t [s].
+    pub time: f64,
+    /// The name of the constraint.
+    pub constraint: String,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What can happen to a constraint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EventKind {
+    /// It was hit faster than what rests.
+    Impact {
+        /// The speed at which it closed in [m/s].
+        speed: f64,
+    },
+    /// It acts from now on: a rope went taut, something came to lie on the ground.
+    Closed,
+    /// It does not act any more.
+    Opened,
+    /// What stuck to it slips.
+    Slipped,
+    /// What slipped sticks to it.
+    Stuck,
+    /// It broke, for good.
+    Broke,
 }
 
 impl StepReport {
@@ -47,6 +80,7 @@ impl StepReport {
         self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
         self.energy = next.energy;
         (self.integrator, self.solver) = (next.integrator, next.solver);
+        self.events.extend(next.events);
         for warning in next.warnings {
             self.warn(warning);
         }

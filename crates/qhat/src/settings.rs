@@ -62,6 +62,11 @@ impl Integrator {
         matches!(self, Integrator::Auto | Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
+    /// Whether it finds the time of an event: where a contact opens or closes, or something breaks.
+    pub fn finds_events(self) -> bool {
+        matches!(self, Integrator::Auto | Integrator::Dopri5 | Integrator::Dop853)
+    }
+
     /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in need).
     pub fn is_implicit(self) -> bool {
         matches!(self, Integrator::Implicit | Integrator::Bdf2)

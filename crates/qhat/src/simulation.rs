@@ -3,7 +3,7 @@
 use crate::constraint::Formulation;
 use crate::error::{SettingsError, StepError};
 use crate::force::{Acts, Drag, Force, Gravity, MouseSpring};
-use crate::integrate::{Workspace, project, step, step_for};
+use crate::integrate::{Workspace, check_switches, project, step, step_for};
 use crate::measure::{self, Energy};
 use crate::point::Motion;
 use crate::report::{Projection, StepReport};
@@ -40,6 +40,7 @@ impl Simulation {
     /// Settings out of range; constraints that no positions near by satisfy.
     pub fn new(system: System, state: State, settings: Settings) -> Result<Self, StepError> {
         settings.check()?;
+        check_switches(&system, &settings)?;
         let mut simulation = Simulation {
             workspace: Workspace::new(&system),
             start: state.clone(),
@@ -182,6 +183,7 @@ impl Simulation {
     /// Settings out of range; constraints that no positions near by satisfy. Nothing is changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), StepError> {
         settings.check()?;
+        check_switches(&self.system, &settings)?;
         if settings.integrator.projects() && !self.settings.integrator.projects() {
             let before = self.energy().total();
             project(&self.system, &mut self.state, &settings, &mut self.workspace)?;

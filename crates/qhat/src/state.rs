@@ -1,5 +1,7 @@
 //! State: where everything is, and all that a restart needs to go on with the same bits.
 
+use crate::switching::Modes;
+
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
@@ -7,6 +9,8 @@ pub struct State {
     pub(crate) qd: Vec<f64>,
     pub(crate) t: f64,
     pub(crate) work: Work,
+    /// What every contact is doing, and what is broken.
+    pub(crate) modes: Modes,
     pub(crate) carry: Option<Carry>,
 }
 
@@ -58,7 +62,7 @@ pub(crate) struct Previous {
 
 impl State {
     pub(crate) fn new(q: Vec<f64>, qd: Vec<f64>) -> Self {
-        State { q, qd, t: 0.0, work: Work::default(), carry: None }
+        State { q, qd, t: 0.0, work: Work::default(), modes: Modes::default(), carry: None }
     }
 
     /// q [m], d·n numbers, particle after particle.

@@ -10,6 +10,7 @@ use crate::multiplier::{MatrixPlan, MatrixStructure};
 use crate::point::{Motion, block, minus, norm};
 use crate::settings::Feedback;
 use crate::state::State;
+use crate::switching::{Modes, Switches};
 use std::collections::HashSet;
 
 /// A factor that would take more is refused [bytes]: 16 GiB, above what computers that show such scenes have to spare.
@@ -139,6 +140,8 @@ pub struct System {
     pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
+    /// Its contacts, and what may break.
+    pub(crate) switches: Switches,
 }
 
 impl System {
@@ -340,6 +343,7 @@ impl System {
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
+        self.switches = Switches::new(&self.constraints, self.row_names.len(), dimension);
         self.plan = Plan::new(self);
     }
 
@@ -409,6 +413,7 @@ impl SystemBuilder {
             compliant: Vec::new(),
             feedback: self.feedback,
             extent,
+            switches: Switches::default(),
         };
         system.set_constraints(self.constraints);
         let plan = system.plan_matrix();
@@ -416,7 +421,8 @@ impl SystemBuilder {
             return Err(BuildError::TooLarge { memory: plan.memory(), limit: MEMORY_LIMIT });
         }
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, plan);
-        Ok((system, State::new(q, qd)))
+        let state = State { modes: Modes::at_first(&system.switches), ..State::new(q, qd) };
+        Ok((system, state))
     }
 
     fn check(&self) -> Result<(), BuildError> {

@@ -36,7 +36,7 @@
 use super::{Formulation, Holds, RowWriter, Softness};
 use crate::force::{Force, Spring, not_negative};
 use crate::linalg::block::{diagonal, outer, plus};
-use crate::point::{Motion, Point, dot, minus, norm, scaled};
+use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
 use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
@@ -65,12 +65,19 @@ pub struct Distance {
     pub compliance: f64,
     /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has no motion to damp.
     pub damping: f64,
+    /// The tension or thrust that it does not survive [N].
+    pub breaks_at: Option<f64>,
 }
 
 impl Distance {
     /// A rod of the given length [m] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0 }
+        Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
+    }
+
+    /// The same with the tension or thrust that it does not survive [N].
+    pub fn breaking_at(self, tension: f64) -> Self {
+        Distance { breaks_at: Some(tension), ..self }
     }
 
     /// The same with a compliance [m/N] and a damping [N·s/m].
@@ -128,6 +135,10 @@ impl Holds for Distance {
 
     fn softness(&self) -> Softness {
         Softness { compliance: self.compliance, damping: self.damping }
+    }
+
+    fn breaks_at(&self) -> Option<f64> {
+        self.breaks_at
     }
 
     fn as_force(&self) -> Option<Force> {
@@ -198,10 +209,9 @@ impl Holds for Distance {
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
             return Err("a rod with a compliance must be held in the length form".into());
         }
-        Ok(())
+        if self.breaks_at.is_some() && self.compliance > 0.0 {
+            return Err("a rod that gives way cannot break yet; take the compliance out".into());
+        }
+        super::check_strength(self.breaks_at)
     }
-}
-
-fn first_axis<const D: usize>() -> Point<D> {
-    std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 })
 }

@@ -3,11 +3,15 @@
 //! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
+mod barrier;
 mod distance;
+mod limits;
 mod nail;
 mod rows;
 
+pub use barrier::{Barrier, Surface};
 pub use distance::{Distance, DistanceForm};
+pub use limits::Limits;
 pub use nail::{Nail, NailForm};
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
@@ -16,6 +20,7 @@ use crate::force::Force;
 use crate::point::Motion;
 use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
+use std::ops::Range;
 
 /// What every constraint answers. [C] is the unit of its residual.
 pub(crate) trait Holds {
@@ -64,11 +69,49 @@ pub(crate) trait Holds {
         false
     }
 
+    /// Which of its rows open and close.
+    fn contacts(&self, _dimension: usize) -> Vec<ContactRows> {
+        Vec::new()
+    }
+
+    /// The tension or thrust that its first row does not survive [N].
+    fn breaks_at(&self) -> Option<f64> {
+        None
+    }
+
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
+}
+
+/// A row of a constraint that opens and closes, C ≥ 0 and λ ≥ 0, with its rows of friction; rows count from its first.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ContactRows {
+    pub(crate) normal: usize,
+    pub(crate) tangents: Range<usize>,
+    /// e.
+    pub(crate) restitution: f64,
+    /// μ.
+    pub(crate) friction: f64,
+}
+
+fn check_restitution(restitution: f64) -> Result<(), String> {
+    if (0.0..=1.0).contains(&restitution) {
+        Ok(())
+    } else {
+        Err(format!("a restitution must lie between 0 (no bounce) and 1 (nothing lost), but is {restitution}"))
+    }
+}
+
+fn check_strength(breaks_at: Option<f64>) -> Result<(), String> {
+    match breaks_at {
+        Some(limit) if !(limit.is_finite() && limit > 0.0) => {
+            Err(format!("the tension at which something breaks must be positive and finite, but is {limit}"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// How far a row gives way: C + α λ + α c Ċ = 0. [α] = m/N, [c] = N·s/m for a rod.
@@ -148,6 +191,12 @@ macro_rules! constraints {
             fn pulls_on_each(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.pulls_on_each(),)* }
             }
+            fn contacts(&self, dimension: usize) -> Vec<ContactRows> {
+                match self { $(Constraint::$kind(constraint) => constraint.contacts(dimension),)* }
+            }
+            fn breaks_at(&self) -> Option<f64> {
+                match self { $(Constraint::$kind(constraint) => constraint.breaks_at(),)* }
+            }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
             }
@@ -170,4 +219,8 @@ constraints! {
     Distance,
     /// One particle at a fixed point.
     Nail,
+    /// Two particles no nearer and no farther than limits: a rope, a strut.
+    Limits,
+    /// One particle on one side of a surface.
+    Barrier,
 }

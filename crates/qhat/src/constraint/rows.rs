@@ -86,6 +86,12 @@ impl Jacobian {
         }
     }
 
+    /// One number of J v.
+    pub(crate) fn multiply_row<const D: usize>(&self, row: usize, v: &[f64]) -> f64 {
+        let entries = self.layout.start[row]..self.layout.start[row + 1];
+        entries.map(|e| dot(self.entry::<D>(e), block(v, self.layout.particle[e]))).sum()
+    }
+
     /// out += Jᵀ λ; λ is m, out is d·n.
     pub(crate) fn add_transposed<const D: usize>(&self, lambda: &[f64], out: &mut [f64]) {
         for (row, &multiplier) in lambda.iter().enumerate() {

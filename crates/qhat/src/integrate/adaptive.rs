@@ -63,6 +63,8 @@ pub(super) enum Outcome {
     NotMet,
     /// The method cannot go on from here, because rows depend on each other.
     Singular,
+    /// It cannot go on at all.
+    Failed(StepError),
 }
 
 /// How far a frame has come.
@@ -78,6 +80,8 @@ pub(super) enum End {
 
 /// What one substep that met the constraints says.
 pub(super) struct Attempt {
+    /// What was met [s]: less than what was tried where an event ends it.
+    pub(super) h: f64,
     /// Error estimate over the tolerance's own unit: relative to the extent of the system.
     pub(super) error: f64,
     /// Newton iterations on C(q) = 0.
@@ -135,6 +139,7 @@ impl<'a> Frame<'a> {
             let end = self.start + done;
             let attempt = match method.attempt(state, h, end) {
                 Outcome::Singular => return Ok(End::Singular),
+                Outcome::Failed(error) => return Err(error),
                 Outcome::NotMet => None,
                 Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
                 Outcome::Met(attempt) => Some(attempt),
@@ -151,6 +156,9 @@ impl<'a> Frame<'a> {
                 continue;
             };
             self.proposed = h * growth.unwrap_or(1.0);
+            let is_cut = attempt.h < h;
+            let (h, done) = if is_cut { (attempt.h, self.done + attempt.h) } else { (h, done) };
+            let end = self.start + done;
             let drift = method.keep(state, h);
             state.work.dissipation += attempt.dissipation;
             state.work.drives += attempt.drives;
@@ -234,6 +242,7 @@ pub(super) fn begin<const D: usize>(
     carry: Option<Carry>,
     workspace: &mut Workspace,
 ) -> Vec<f64> {
+    workspace.set_modes(system, state);
     let Some(carry) = carry.filter(|carry| carry.lambda.len() == system.row_count()) else {
         return workspace.solve::<D>(system, state, &Feedback::NONE).lambda.clone();
     };

@@ -29,6 +29,11 @@ pub(super) fn frame<const D: usize>(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     adaptive::check_length(length)?;
+    if !system.switches.is_empty() {
+        // Nobody else finds events.
+        let report = pair::frame::<D>(&dop853::DOP853, system, state, settings, length, workspace)?;
+        return Ok(StepReport { integrator: Integrator::Dop853, ..report });
+    }
     let (start, limit) = (state.t, most_substeps(system, settings));
     let resting = state.carry.as_ref().map_or(0, |carry| carry.resting);
     let mut report = StepReport::default();

@@ -60,7 +60,7 @@ pub(super) struct Rows<'a, const D: usize> {
     pub(super) is_factored: bool,
 }
 
-fn pack(flat: &[f64], blocks: &mut [F8]) {
+pub(super) fn pack(flat: &[f64], blocks: &mut [F8]) {
     for (chunk, block) in flat.chunks(LANES).zip(blocks) {
         block.0[..chunk.len()].copy_from_slice(chunk);
     }
@@ -97,8 +97,9 @@ impl<const D: usize> Field for Rows<'_, D> {
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
         let drives = equation.drive_power(self.system, &self.feedback);
+        let friction: f64 = equation.friction_power(motion.qd);
         Some(Power {
-            dissipation: measure::dissipation(self.system, motion),
+            dissipation: measure::dissipation(self.system, motion) + friction,
             stabilization: constraint_power.sum::<f64>() - drives,
             drives,
         })
@@ -133,7 +134,7 @@ impl<const D: usize> Field for Rows<'_, D> {
     }
 
     fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
-        measure::drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.q)
+        measure::drift::<D>(self.system, &self.workspace.equation, &self.workspace.q)
     }
 
     fn turn_back(&mut self) {

@@ -10,6 +10,7 @@ mod dop853;
 mod dopri5;
 mod end_of_step;
 mod euler;
+mod events;
 mod field;
 mod implicit;
 mod pair;
@@ -77,12 +78,20 @@ impl Workspace {
         if !is_factored {
             self.equation.solver.stays_deficient = false;
         }
+        self.set_modes(system, state);
         self.equation.solve(system, motion, feedback, is_factored, Multipliers::Least);
         self.factored_at.clear();
         if feedback.diagonal_drag == 0.0 {
             self.note_factored(state);
         }
         &self.equation
+    }
+
+    /// From now on those rows take part that do in the state.
+    pub(crate) fn set_modes(&mut self, system: &System, state: &State) {
+        if !system.switches.is_empty() {
+            self.equation.set_modes(system, &state.modes);
+        }
     }
 
     /// Whether the factor at hand is that of A at the state.
@@ -120,6 +129,7 @@ pub(crate) fn step_for(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     settings.check()?;
+    check_switches(system, settings)?;
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
         Integrator::Euler => fixed::<D>(system, state, frame, workspace, euler::step::<D>),
         Integrator::SymplecticEuler => fixed::<D>(system, state, frame, workspace, symplectic_euler::step::<D>),
@@ -139,6 +149,18 @@ pub(crate) fn step_for(
         own => own,
     };
     Ok(StepReport { integrator, ..report })
+}
+
+/// Refuses an integrator that cannot find events, where there are some to find.
+pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(), StepError> {
+    let first = system.switches.contacts.first().map(|contact| contact.constraint);
+    match first.or(system.switches.breakables.first().map(|breakable| breakable.constraint)) {
+        Some(place) if !settings.integrator.finds_events() => {
+            let constraint = system.constraints[place].name.clone();
+            Err(StepError::NoEvents { integrator: settings.integrator, constraint })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already.
@@ -203,7 +225,7 @@ fn fixed<const D: usize>(
 fn examine<const D: usize>(system: &System, t: f64, h: f64, workspace: &mut Workspace) -> Result<Drift, StepError> {
     check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
     workspace.equation.constrain(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + h });
-    let drift = measure::drift::<D>(system, &workspace.equation.rows, &workspace.q);
+    let drift = measure::drift::<D>(system, &workspace.equation, &workspace.q);
     if drift.relative > DIVERGED {
         let row = system.row_names[drift.worst_row].clone();
         return Err(StepError::Diverged { time: t, row, relative: drift.relative });

@@ -2,6 +2,7 @@
 
 use super::Workspace;
 use super::adaptive::{self, Attempt, End, Frame, MISSED, Method, Outcome};
+use super::events::Switching;
 use super::field::{Chains, Field, Rows};
 use super::runge_kutta::{Combination, Squares, Stages, Tableau, advance};
 use crate::error::StepError;
@@ -52,12 +53,12 @@ impl Pair {
 }
 
 /// A pair on its way over one frame.
-struct Run<'a, F> {
+pub(super) struct Run<'a, F> {
     pair: &'a Pair,
-    field: F,
-    system: &'a System,
-    settings: &'a Settings,
-    stages: &'a mut Stages,
+    pub(super) field: F,
+    pub(super) system: &'a System,
+    pub(super) settings: &'a Settings,
+    pub(super) stages: &'a mut Stages,
 }
 
 /// Carries the state over one frame.
@@ -105,11 +106,15 @@ pub(super) fn carry_on<const D: usize>(
     workspace.factored_at.clear();
     let mut stages = std::mem::take(&mut workspace.stages);
     let field = Rows::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
-    let end = run(pair, field, &mut stages, &mut frame, state);
+    let end = if system.switches.is_empty() {
+        run(pair, field, &mut stages, &mut frame, state)
+    } else {
+        run_switching(pair, field, &mut stages, &mut frame, state, length)
+    };
     workspace.stages = stages;
     let end = end?;
     frame.report.solver = Solver::Rows;
-    if end == End::Whole {
+    if end == End::Whole && system.switches.is_empty() {
         // What ran out of work may have ended on a substep that was taken back: the factor is then that of one of its stages.
         workspace.note_factored(state);
     }
@@ -131,6 +136,24 @@ fn run<F: Field>(
     frame.run(&mut Run { pair, field, system, settings, stages }, state)
 }
 
+/// The same with events; they are told in any case.
+fn run_switching<const D: usize>(
+    pair: &Pair,
+    mut field: Rows<'_, D>,
+    stages: &mut Stages,
+    frame: &mut Frame<'_>,
+    state: &mut State,
+    length: f64,
+) -> Result<End, StepError> {
+    stages.resize(field.blocks());
+    field.begin(state, &mut stages.q, &mut stages.qd);
+    let (system, settings) = (frame.system, frame.settings);
+    let mut switching = Switching::begin(Run { pair, field, system, settings, stages }, state, length)?;
+    let end = frame.run(&mut switching, state);
+    frame.report.events.append(&mut switching.events);
+    end
+}
+
 impl<F: Field> Method for Run<'_, F> {
     fn estimate_order(&self) -> f64 {
         f64::from(self.pair.order)
@@ -148,7 +171,7 @@ impl<F: Field> Method for Run<'_, F> {
         if error.is_nan() && self.stages.overflow() {
             return Outcome::NotMet;
         }
-        let mut attempt = Attempt { error, iterations: 0, dissipation: work.dissipation, drives: work.drives };
+        let mut attempt = Attempt { h, error, iterations: 0, dissipation: work.dissipation, drives: work.drives };
         if error > MISSED * self.settings.tolerance || error.is_nan() {
             return Outcome::Met(attempt);
         }

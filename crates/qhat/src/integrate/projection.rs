@@ -33,6 +33,7 @@ pub(super) fn project<const D: usize>(
     settings: &Settings,
     workspace: &mut Workspace,
 ) -> Result<Projection, StepError> {
+    workspace.set_modes(system, state);
     let Workspace { equation, q, qd, .. } = workspace;
     q.copy_from_slice(&state.q);
     qd.copy_from_slice(&state.qd);

@@ -143,7 +143,7 @@ impl<const D: usize> Method for Run<'_, D> {
         // μ/h is the impulse where the substep begins, ν where it ends.
         let Workspace { equation, rattle: Scratch { mu, nu, Ct, .. }, .. } = &**workspace;
         let drives = measure::drive_power(system, Ct, mu) / h + measure::drive_power(system, &equation.rows.Ct, nu);
-        Outcome::Met(Attempt { error, iterations, dissipation: 0.5 * h * (before + after), drives })
+        Outcome::Met(Attempt { h, error, iterations, dissipation: 0.5 * h * (before + after), drives })
     }
 
     fn keep(&mut self, state: &mut State, h: f64) -> Drift {
@@ -152,7 +152,7 @@ impl<const D: usize> Method for Run<'_, D> {
         }
         std::mem::swap(&mut state.q, &mut self.workspace.q);
         std::mem::swap(&mut state.qd, &mut self.workspace.qd);
-        measure::drift::<D>(self.system, &self.workspace.equation.rows, &state.q)
+        measure::drift::<D>(self.system, &self.workspace.equation, &state.q)
     }
 
     fn turn_back(&mut self, state: &State) {

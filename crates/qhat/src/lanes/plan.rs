@@ -226,7 +226,7 @@ fn chains(system: &System, is_held: &[bool]) -> Option<Vec<Chain>> {
             // What gives way is a spring.
             continue;
         }
-        if rod.form != DistanceForm::Length || (is_held[rod.a.0] && is_held[rod.b.0]) {
+        if rod.form != DistanceForm::Length || rod.breaks_at.is_some() || (is_held[rod.a.0] && is_held[rod.b.0]) {
             return None;
         }
         for end in [rod.a.0, rod.b.0] {

@@ -109,8 +109,9 @@ impl MultiplierSolver {
         }
     }
 
-    /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) are left out: their λ is zero.
-    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64) {
+    /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) and those that are off are left out: their λ is
+    /// zero. `is_off` may be empty.
+    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64, is_off: &[bool]) {
         let pattern = &matrix.pattern;
         // diag(A + ε I), to which hubs add their part.
         for i in 0..self.r.len() {
@@ -126,7 +127,8 @@ impl MultiplierSolver {
                 continue;
             }
             let diagonal = self.r[i];
-            let takes_part = !matrix.inert[row as usize] && diagonal > 0.0;
+            let is_off = is_off.get(row as usize).is_some_and(|is_off| *is_off);
+            let takes_part = !matrix.inert[row as usize] && !is_off && diagonal > 0.0;
             self.scale[i] = if takes_part { 1.0 / diagonal.sqrt() } else { 0.0 };
             self.dropped += usize::from(!takes_part);
         }

@@ -5,6 +5,7 @@
 //! ```
 
 mod factor;
+mod friction;
 mod matrix;
 mod reaction;
 mod rhs;
@@ -20,7 +21,10 @@ use crate::measure;
 use crate::point::Motion;
 use crate::report::Warning;
 use crate::settings::Feedback;
+use crate::switching::{Mode, Modes};
 use crate::system::System;
+use friction::Sliding;
+pub(crate) use friction::{Beginning, Friction};
 
 /// Every quantity of one evaluation, in arrays that are made once and written again.
 #[derive(Clone, Debug)]
@@ -35,6 +39,20 @@ pub(crate) struct Equation {
     pub(crate) lambda: Vec<f64>,
     pub(crate) Q_hat: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
+    /// For each row whether it takes no part; empty where nothing switches.
+    pub(crate) is_off: Vec<bool>,
+    /// C and Ċ of every row, where those that take no part are zero in `rows`; empty where nothing switches.
+    pub(crate) gaps: Gaps,
+    pub(crate) friction: Friction,
+    /// W (Jᵀλ + F), of the last λ that was asked for: d·n numbers; empty until then.
+    pub(crate) push: Vec<f64>,
+}
+
+/// C and Ċ of every row, m numbers each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Gaps {
+    pub(crate) C: Vec<f64>,
+    pub(crate) Cd: Vec<f64>,
 }
 
 impl Equation {
@@ -50,6 +68,10 @@ impl Equation {
             lambda: vec![0.0; m],
             Q_hat: vec![0.0; coordinates],
             qdd: vec![0.0; coordinates],
+            is_off: vec![false; if system.switches.is_empty() { 0 } else { m }],
+            gaps: Gaps::default(),
+            friction: Friction::default(),
+            push: Vec::new(),
         }
     }
 
@@ -69,7 +91,7 @@ impl Equation {
         if !is_factored {
             self.factor::<D>(system, feedback.diagonal_drag);
         }
-        self.solver.solve(&system.matrix, &self.b.sum, wanted, &mut self.lambda);
+        self.solve_multipliers::<D>(system, wanted);
         let s = 1.0 - feedback.elasticity;
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
         // What gives way has acted in Q already; its λ is told all the same.
@@ -77,11 +99,92 @@ impl Equation {
             self.lambda[row] = -(self.rows.C[row] / soft.compliance + soft.damping * self.rows.Cd[row]);
         }
         reaction::accelerations::<D>(&system.inverse_mass, &self.Q, &self.Q_hat, &mut self.qdd);
+        if !self.friction.is_empty() {
+            reaction::add_accelerations::<D>(&system.inverse_mass, &self.friction.force, &mut self.qdd);
+        }
+    }
+
+    /// λ for the right side at hand, friction of what slides included; where that has no answer λ is not a number.
+    pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System, wanted: Multipliers) {
+        /// Friction that presses little converges in a few passes; what takes more than this is next to a paradox.
+        const PASSES: usize = 100;
+        /// Where to stop, relative to the largest λ; and below what it must have come where roundoff stops it before.
+        const ARRIVED: f64 = 1e-13;
+        const NEARLY: f64 = 1e-9;
+        let mut last = f64::INFINITY;
+        self.solver.solve(&system.matrix, &self.b.sum, wanted, &mut self.lambda);
+        if self.friction.is_empty() {
+            return;
+        }
+        for _ in 0..PASSES {
+            let Equation { friction, rows, b, lambda, solver, .. } = self;
+            friction.write_force::<D>(rows, lambda, system.coordinate_count());
+            friction.write_target::<D>(rows, &system.inverse_mass, &b.sum);
+            friction.last.clone_from(lambda);
+            solver.solve(&system.matrix, &friction.target, wanted, lambda);
+            let largest = lambda.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let change = lambda.iter().zip(&friction.last).fold(0.0_f64, |most, (x, last)| most.max((x - last).abs()));
+            let is_stuck = change > 0.5 * last && change <= NEARLY * largest;
+            if change <= ARRIVED * largest || is_stuck || !largest.is_finite() {
+                return;
+            }
+            last = change;
+        }
+        self.lambda.fill(f64::NAN);
+    }
+
+    /// W (Jᵀλ + F) for λ at hand.
+    pub(crate) fn write_push<const D: usize>(&mut self, system: &System) {
+        self.write_impulse::<D>(system);
+        if !self.friction.is_empty() {
+            reaction::add_accelerations::<D>(&system.inverse_mass, &self.friction.force, &mut self.push);
+        }
+    }
+
+    /// W Jᵀλ for λ at hand.
+    pub(crate) fn write_impulse<const D: usize>(&mut self, system: &System) {
+        self.Q_hat.fill(0.0);
+        self.rows.J.add_transposed::<D>(&self.lambda, &mut self.Q_hat);
+        self.push.clear();
+        self.push.resize(system.coordinate_count(), 0.0);
+        reaction::add_accelerations::<D>(&system.inverse_mass, &self.Q_hat, &mut self.push);
+    }
+
+    /// J W (Jᵀλ + F) in one row, as it was pushed last.
+    pub(crate) fn push_along<const D: usize>(&self, row: usize) -> f64 {
+        self.rows.J.multiply_row::<D>(row, &self.push)
+    }
+
+    /// Which rows take part from now on. Nothing is factored for them yet.
+    pub(crate) fn set_modes(&mut self, system: &System, modes: &Modes) {
+        modes.write_off(&system.switches, &mut self.is_off);
+        self.friction.sliding.clear();
+        for (contact, mode) in system.switches.contacts.iter().zip(&modes.contacts) {
+            if let Mode::Sliding(direction) = *mode {
+                let (normal, tangents, friction) = (contact.normal, contact.tangents.clone(), contact.friction);
+                self.friction.sliding.push(Sliding {
+                    normal,
+                    tangents,
+                    friction,
+                    direction,
+                    began: direction,
+                    turns: false,
+                });
+            }
+        }
     }
 
     /// Power of the drives, of Q̂ as it was solved last [W].
     pub(crate) fn drive_power(&self, system: &System, feedback: &Feedback) -> f64 {
         (1.0 - feedback.elasticity) * measure::drive_power(system, &self.rows.Ct, &self.lambda)
+    }
+
+    /// Power of the friction of what slides, of λ as it was solved last [W].
+    pub(crate) fn friction_power(&self, qd: &[f64]) -> f64 {
+        if self.friction.is_empty() {
+            return 0.0;
+        }
+        self.friction.force.iter().zip(qd).map(|(force, velocity)| force * velocity).sum()
     }
 
     /// Q and W Q.
@@ -94,21 +197,46 @@ impl Equation {
         }
     }
 
-    /// C, Ċ, J and γ.
+    /// C, Ċ, J and γ, with zeros where a row takes no part.
     pub(crate) fn constrain<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
+        self.constrain_all(system, motion);
+        if self.is_off.is_empty() {
+            return;
+        }
+        if !self.friction.is_empty() {
+            self.friction.follow(&self.rows);
+        }
+        self.gaps.C.clone_from(&self.rows.C);
+        self.gaps.Cd.clone_from(&self.rows.Cd);
+        for row in (0..self.is_off.len()).filter(|&row| self.is_off[row]) {
+            (self.rows.C[row], self.rows.Cd[row], self.rows.gamma[row]) = (0.0, 0.0, 0.0);
+        }
+    }
+
+    /// C, Ċ, J and γ of every row, whether it takes part or not.
+    pub(crate) fn constrain_all<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
         self.rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     }
 
     /// A = J W Jᵀ and the factor of A + ε I.
     pub(crate) fn factor<const D: usize>(&mut self, system: &System, epsilon: f64) {
         system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-        self.solver.factor(&system.matrix, &self.A, epsilon);
+        self.solver.factor(&system.matrix, &self.A, epsilon, &self.is_off);
+    }
+
+    /// Whether a row takes no part now.
+    pub(crate) fn is_off(&self, row: usize) -> bool {
+        self.is_off.get(row).is_some_and(|is_off| *is_off)
     }
 
     /// What a user should know of the last factorization.
     pub(crate) fn warnings(&self, system: &System) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        let rows = self.solver.left_out(&system.matrix).into_iter().filter(|&row| !system.matrix.inert[row]);
+        let rows = self
+            .solver
+            .left_out(&system.matrix)
+            .into_iter()
+            .filter(|&row| !system.matrix.inert[row] && !self.is_off(row));
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });

@@ -17,6 +17,15 @@ pub(crate) fn constraint_forces<const D: usize>(J: &Jacobian, lambda: &[f64], s:
     }
 }
 
+/// q̈ += W F.
+pub(crate) fn add_accelerations<const D: usize>(W: &[f64], F: &[f64], qdd: &mut [f64]) {
+    for (i, &w) in W.iter().enumerate() {
+        for k in i * D..(i + 1) * D {
+            qdd[k] += w * F[k];
+        }
+    }
+}
+
 /// q̈ = W (Q + Q̂).
 pub(crate) fn accelerations<const D: usize>(W: &[f64], Q: &[f64], Q_hat: &[f64], qdd: &mut [f64]) {
     for (i, &w) in W.iter().enumerate() {

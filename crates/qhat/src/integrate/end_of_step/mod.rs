@@ -128,7 +128,7 @@ fn substeps<const D: usize>(
         report.smallest_substep = report.smallest_substep.min(h);
         done += parts;
         state.t = scratch.base.end;
-        let drift = measure::drift::<D>(system, &workspace.equation.rows, &state.q);
+        let drift = measure::drift::<D>(system, &workspace.equation, &state.q);
         report.max_residual = report.max_residual.max(drift.residual);
         report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
         report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);

@@ -1,0 +1,142 @@
+//! Limits: two particles a and b stay no nearer than L₀ and no farther than L₁. A rope has only L₁, a strut that may come apart only L₀.
+//!
+//! ```text
+//! d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
+//! longest   C = L₁ − |d| ≥ 0    J = −nᵀ on a, nᵀ on b     γ = −(u·u − (n·u)²)/|d|    λ ≥ 0 [N]: tension
+//! shortest  C = |d| − L₀ ≥ 0    J = nᵀ on a, −nᵀ on b     γ = (u·u − (n·u)²)/|d|     λ ≥ 0 [N]: thrust
+//! ∂²C/∂x² = ∓(I − nnᵀ)/|d| on aa and bb, its negative on ab
+//! ```
+//!
+//! Where it jerks taut, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0: no direction; the first axis is taken.
+
+use super::{ContactRows, Formulation, Holds, RowWriter};
+use crate::force::not_negative;
+use crate::linalg::block::{diagonal, outer, plus};
+use crate::point::{Motion, Point, dot, first_axis, minus, norm, scaled};
+use crate::stiffness::Stiffness;
+use crate::system::ParticleId;
+
+/// Two particles whose distance stays between two limits: a rope, a strut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// One end.
+    pub a: ParticleId,
+    /// The other end.
+    pub b: ParticleId,
+    /// L₀ [m], not negative.
+    pub shortest: Option<f64>,
+    /// L₁ [m], positive and more than L₀.
+    pub longest: Option<f64>,
+    /// e, in [0, 1]: the part of the closing speed that comes back where a limit is hit.
+    pub restitution: f64,
+    /// The tension or thrust that it does not survive [N].
+    pub breaks_at: Option<f64>,
+}
+
+impl Limits {
+    /// A rope: slack up to its length [m], and then it does not stretch.
+    pub fn rope(a: ParticleId, b: ParticleId, length: f64) -> Self {
+        Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None }
+    }
+
+    /// A strut that keeps two particles at least so far apart [m], and lets them go farther.
+    pub fn strut(a: ParticleId, b: ParticleId, length: f64) -> Self {
+        Limits { a, b, shortest: Some(length), longest: None, restitution: 0.0, breaks_at: None }
+    }
+
+    /// Both limits [m].
+    pub fn between(a: ParticleId, b: ParticleId, shortest: f64, longest: f64) -> Self {
+        Limits { a, b, shortest: Some(shortest), longest: Some(longest), restitution: 0.0, breaks_at: None }
+    }
+
+    /// The limits with the sign of |d| in C: the longest first.
+    fn rows(&self) -> impl Iterator<Item = (f64, f64)> {
+        [(-1.0, self.longest), (1.0, self.shortest)].into_iter().filter_map(|(sign, limit)| Some((sign, limit?)))
+    }
+}
+
+impl Holds for Limits {
+    fn row_count(&self, _: usize) -> usize {
+        self.rows().count()
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.a, self.b]
+    }
+
+    fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
+        let d = minus(motion.x(self.a), motion.x(self.b));
+        let u = minus(motion.v(self.a), motion.v(self.b));
+        let length = norm(d);
+        let n = if length > 0.0 { scaled(1.0 / length, d) } else { first_axis() };
+        let rate = dot(n, u);
+        let gamma = if length > 0.0 { (dot(u, u) - rate * rate) / length } else { 0.0 };
+        for (sign, limit) in self.rows() {
+            let along: Point<D> = scaled(sign, n);
+            rows.write(sign * (length - limit), sign * rate, sign * gamma, [along, scaled(-1.0, along)]);
+        }
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        self.longest.or(self.shortest).filter(|&limit| limit > 0.0).unwrap_or(extent)
+    }
+
+    fn contacts(&self, _: usize) -> Vec<ContactRows> {
+        let rows = 0..self.rows().count();
+        rows.map(|row| ContactRows { normal: row, tangents: 0..0, restitution: self.restitution, friction: 0.0 })
+            .collect()
+    }
+
+    fn breaks_at(&self) -> Option<f64> {
+        self.breaks_at
+    }
+
+    fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let length = norm(minus(motion.x(self.a), motion.x(self.b)));
+        if length > 0.0 { 1.0 / length } else { 0.0 }
+    }
+
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    ) {
+        let d = minus(motion.x(self.a), motion.x(self.b));
+        let length = norm(d);
+        if length > 0.0 {
+            let n = scaled(1.0 / length, d);
+            let pull: f64 = self.rows().zip(lambda).map(|((sign, _), lambda)| -sign * lambda).sum();
+            let stiffness = pull / length;
+            visit(0, 1, Stiffness::Difference(plus(diagonal(stiffness), -stiffness, outer(1.0, n, n))));
+        }
+    }
+
+    fn formulated(&self, _: Formulation) -> Self {
+        self.clone()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.a == self.b {
+            return Err("a rope or strut needs two different particles".into());
+        }
+        match (self.shortest, self.longest) {
+            (None, None) => return Err("give the shortest length, the longest, or both".into()),
+            (Some(shortest), Some(longest)) if shortest >= longest => {
+                return Err(format!(
+                    "the longest length must be more than the shortest, but {longest} m is not more than {shortest} m; a rod holds one length"
+                ));
+            }
+            _ => {}
+        }
+        not_negative("the shortest length", self.shortest.unwrap_or(0.0))?;
+        match self.longest {
+            Some(longest) if !(longest.is_finite() && longest > 0.0) => {
+                return Err(format!("the longest length must be positive and finite, but is {longest}"));
+            }
+            _ => {}
+        }
+        super::check_restitution(self.restitution)?;
+        super::check_strength(self.breaks_at)
+    }
+}

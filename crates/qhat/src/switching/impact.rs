@@ -1,0 +1,78 @@
+//! Impacts: what touches and closes in jumps to a velocity that does not.
+//!
+//! ```text
+//! q̇⁺ = q̇⁻ + W (Jᵀ Λ + F)                     Λ: impulses [N·s], F those of friction
+//! equations and what is at rest   Ċ⁺ = 0
+//! contacts that touch             Ċ⁺ + e Ċ⁻ ≥ 0,  Λ_n ≥ 0, one of the two zero       (Newton's law of impact)
+//! friction                        no slip after, or |Λ_t| = μ Λ_n against the slip before
+//! ```
+//!
+//! so A Λ = b with b = −(1 + e) Ċ⁻ where a contact closes in and −Ċ elsewhere: the problem of `complementarity.rs`.
+//!
+//! Newton's law can gain energy where several contacts meet, or one with friction (Kane's pendulum). An impact that would is taken
+//! without giving back, e = 0, which never gains.
+
+use super::{Jam, Modes, Touching, settle};
+use crate::multiplier::{Equation, Multipliers};
+use crate::point::{block, dot};
+use crate::system::{ParticleId, System};
+
+/// Gains below this part of the kinetic energy are roundoff.
+const ROUNDOFF: f64 = 1e-12;
+
+/// Applies the impact to q̇; `gives_back` says for each of what touches whether it is fast enough to bounce. The rows must have been
+/// evaluated at q and q̇. Returns the energy lost [J].
+pub(crate) fn collide<const D: usize>(
+    equation: &mut Equation,
+    system: &System,
+    modes: &mut Modes,
+    touching: &[Touching],
+    gives_back: &[bool],
+    qd: &mut [f64],
+) -> Result<f64, Jam> {
+    let before = kinetic::<D>(system, qd);
+    let start = modes.clone();
+    let mut is_bouncing = true;
+    loop {
+        modes.clone_from(&start);
+        for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
+            *b = -rate;
+        }
+        let mut bounces = false;
+        for (&Touching { contact, .. }, &gives_back) in touching.iter().zip(gives_back) {
+            let contact = &system.switches.contacts[contact];
+            let rate = equation.rows.Cd[contact.normal];
+            if is_bouncing && gives_back && rate < 0.0 {
+                equation.b.sum[contact.normal] = -(1.0 + contact.restitution) * rate;
+                bounces |= contact.restitution > 0.0;
+            }
+        }
+        settle::<D>(equation, system, modes, touching)?;
+        let after: Vec<f64> = qd.iter().zip(&equation.push).map(|(v, push)| v + push).collect();
+        let lost = before - kinetic::<D>(system, &after);
+        if !bounces || lost >= -ROUNDOFF * before {
+            qd.copy_from_slice(&after);
+            return Ok(lost);
+        }
+        is_bouncing = false;
+    }
+}
+
+/// Takes out of q̇ what moves the rows that are on, with the factor and rows at hand. Returns the energy lost [J].
+pub(crate) fn hold<const D: usize>(equation: &mut Equation, system: &System, qd: &mut [f64]) -> f64 {
+    let before = kinetic::<D>(system, qd);
+    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
+        *b = -rate;
+    }
+    let Equation { solver, b, lambda, .. } = &mut *equation;
+    solver.solve(&system.matrix, &b.sum, Multipliers::Force, lambda);
+    equation.write_impulse::<D>(system);
+    qd.iter_mut().zip(&equation.push).for_each(|(v, push)| *v += push);
+    before - kinetic::<D>(system, qd)
+}
+
+/// T of what can move [J].
+fn kinetic<const D: usize>(system: &System, qd: &[f64]) -> f64 {
+    let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+    0.5 * moving.map(|i| (system.mass[i.0], block::<D>(qd, i))).map(|(m, v)| m * dot(v, v)).sum::<f64>()
+}

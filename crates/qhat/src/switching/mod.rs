@@ -1,0 +1,87 @@
+//! Constraints that act only while they must: contacts that open and close, and what breaks.
+//!
+//! A contact holds C ≥ 0 with λ ≥ 0, one of the two zero; with friction it has one row for each direction along the surface. The
+//! rows are always there, and evaluated; which of them take part in A λ = b is its mode:
+//!
+//! ```text
+//! open       none                 λ = 0, C ≥ 0
+//! smooth     normal               C = 0, λ ≥ 0, no friction
+//! sticking   normal, tangents     no slip, |λ_t| ≤ μ λ_n
+//! sliding    normal               λ_t = −μ λ_n (direction of slip), an applied force that follows λ_n
+//! ```
+//!
+//! Between two events no mode changes, and the motion is as smooth as with equations alone. `integrate/events.rs` finds the time of
+//! each event, `impact.rs` the jump of the velocity, `complementarity.rs` the modes that go on.
+//! Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996).
+
+mod complementarity;
+mod impact;
+mod modes;
+mod reaction;
+
+pub(crate) use complementarity::Jam;
+use complementarity::{Touching, settle};
+use impact::{collide, hold};
+pub(crate) use modes::{Mode, Modes};
+pub(crate) use reaction::{Moment, Pace, Trigger, still};
+
+use crate::constraint::Holds;
+use crate::system::NamedConstraint;
+use std::ops::Range;
+
+/// A row that opens and closes, with its rows of friction.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Contact {
+    /// Its place among the constraints.
+    pub(crate) constraint: usize,
+    pub(crate) normal: usize,
+    /// None without friction; one in the plane, two in space.
+    pub(crate) tangents: Range<usize>,
+    /// e, the part of the closing speed that an impact gives back.
+    pub(crate) restitution: f64,
+    /// μ.
+    pub(crate) friction: f64,
+}
+
+/// A constraint that breaks.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Breakable {
+    /// Its place among the constraints.
+    pub(crate) constraint: usize,
+    pub(crate) rows: Range<usize>,
+    /// The tension that it does not survive [N].
+    pub(crate) limit: f64,
+}
+
+/// Everything of a system that switches.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Switches {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) breakables: Vec<Breakable>,
+    /// For each row whether C may be above zero.
+    pub(crate) is_one_sided: Vec<bool>,
+}
+
+impl Switches {
+    pub(crate) fn new(constraints: &[NamedConstraint], rows: usize, dimension: usize) -> Self {
+        let mut switches = Switches { is_one_sided: vec![false; rows], ..Switches::default() };
+        for (place, NamedConstraint { constraint, first_row, .. }) in constraints.iter().enumerate() {
+            for rows in constraint.contacts(dimension) {
+                let normal = first_row + rows.normal;
+                let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
+                switches.is_one_sided[normal] = true;
+                let (restitution, friction) = (rows.restitution, rows.friction);
+                switches.contacts.push(Contact { constraint: place, normal, tangents, restitution, friction });
+            }
+            if let Some(limit) = constraint.breaks_at() {
+                let rows = *first_row..first_row + constraint.row_count(dimension);
+                switches.breakables.push(Breakable { constraint: place, rows, limit });
+            }
+        }
+        switches
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.contacts.is_empty() && self.breakables.is_empty()
+    }
+}

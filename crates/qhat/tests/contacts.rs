@@ -1,0 +1,248 @@
+//! Contacts, ropes, friction and what breaks, against closed forms.
+
+mod systems;
+
+use qhat::{
+    Barrier, Dimension, Distance, EventKind, Integrator, Limits, Particle, ParticleId, Settings, Simulation, StepError,
+    StepReport, Surface, System, SystemBuilder,
+};
+use systems::{G, gravity, settings};
+
+const FRAME: f64 = 1.0 / 60.0;
+
+fn ground() -> Surface {
+    Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 }
+}
+
+fn start(builder: SystemBuilder) -> Simulation {
+    let (system, state) = builder.build().unwrap();
+    let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, FRAME) };
+    Simulation::new(system, state, settings).unwrap()
+}
+
+/// Runs so many seconds; every report, in order.
+fn run(simulation: &mut Simulation, seconds: f64) -> Vec<StepReport> {
+    let frames = (seconds / FRAME).round() as usize;
+    (0..frames).map(|frame| simulation.step().unwrap_or_else(|error| panic!("frame {frame}: {error}"))).collect()
+}
+
+fn events(reports: &[StepReport]) -> Vec<(f64, EventKind)> {
+    reports.iter().flat_map(|report| &report.events).map(|event| (event.time, event.kind)).collect()
+}
+
+/// Dropped from a height H with restitution e, it hits at √(2H/g)(1 + 2e + 2e² + …), and rests after the sum of all.
+#[test]
+fn bounces_come_when_they_should() {
+    let (height, e) = (1.0, 0.5);
+    let mut builder = System::builder(Dimension::Two);
+    let ball = builder.particle(Particle::at("ball", [0.0, height]));
+    builder.constraint("ground", Barrier { restitution: e, ..Barrier::new(ball, ground()) }).force(gravity());
+    let mut simulation = start(builder);
+    let reports = run(&mut simulation, 2.0);
+    let fall = (2.0 * height / G).sqrt();
+    let impacts = events(&reports).into_iter().filter_map(|(time, kind)| match kind {
+        EventKind::Impact { speed } => Some((time, speed)),
+        _ => None,
+    });
+    let impacts: Vec<(f64, f64)> = impacts.collect();
+    assert!(impacts.len() > 8, "{impacts:?}");
+    let (mut expected, mut flight) = (fall, 2.0 * fall * e);
+    for (k, (time, speed)) in impacts.iter().enumerate().take(8) {
+        // A gap of 1e-10 m at this speed.
+        assert!((time - expected).abs() < 1e-10 / speed, "impact {k} at {time}, expected {expected}");
+        assert!((speed - G * fall * e.powi(k as i32)).abs() < 1e-9, "impact {k}: {speed} m/s");
+        expected += flight;
+        flight *= e;
+    }
+    assert!(simulation.state().positions()[1].abs() < 1e-10);
+    assert!(simulation.state().velocities()[1].abs() < 1e-12);
+    // All that is lost is booked.
+    assert!(simulation.energy_error().abs() < 1e-9, "{:e}", simulation.energy_error());
+}
+
+/// On a slope of angle a: sticks where tan a < μ; else slides with g (sin a − μ cos a).
+#[test]
+fn coulomb_on_a_slope() {
+    for (angle, mu) in [(0.3_f64, 0.4), (0.3, 0.3), (0.3, 0.1), (1.2, 2.0), (0.5, 0.546)] {
+        let (sin, cos) = angle.sin_cos();
+        for dimension in [Dimension::Two, Dimension::Three] {
+            let mut builder = System::builder(dimension);
+            let block = builder.particle(Particle::at("block", vec![0.0; dimension.number()]));
+            let surface = Surface::HalfSpace { normal: [sin, cos, 0.0], offset: 0.0 };
+            builder.constraint("slope", Barrier { friction: mu, ..Barrier::new(block, surface) }).force(gravity());
+            let mut simulation = start(builder);
+            run(&mut simulation, 1.0);
+            let q = simulation.state().positions();
+            let gone = q[0].hypot(q[1]);
+            let expected = 0.5 * G * (sin - mu * cos).max(0.0);
+            assert!((gone - expected).abs() < 1e-9, "{angle} {mu}: {gone} m, expected {expected}");
+            assert!(simulation.energy_error_max().abs() < 1e-9);
+        }
+    }
+}
+
+/// Thrown along the ground it stops after v²/(2 μ g), and stays.
+#[test]
+fn what_slides_stops() {
+    let (v, mu) = (3.0, 0.4);
+    for direction in [[1.0, 0.0], [0.6, 0.8]] {
+        let mut builder = System::builder(Dimension::Three);
+        let puck = Particle::at("puck", [0.0; 3]).with_velocity([v * direction[0], 0.0, v * direction[1]]);
+        let puck = builder.particle(puck);
+        builder.constraint("ice", Barrier { friction: mu, ..Barrier::new(puck, ground()) }).force(gravity());
+        let mut simulation = start(builder);
+        let reports = run(&mut simulation, 2.0);
+        let q = simulation.state().positions();
+        let far = v * v / (2.0 * mu * G);
+        assert!((q[0] - far * direction[0]).abs() < 1e-8 && (q[2] - far * direction[1]).abs() < 1e-8, "{q:?}, {far}");
+        let stuck: Vec<_> = events(&reports).into_iter().filter(|(_, kind)| *kind == EventKind::Stuck).collect();
+        assert_eq!(stuck.len(), 1, "{:?}", events(&reports));
+        assert!((stuck[0].0 - v / (mu * G)).abs() < 1e-8, "{stuck:?}");
+        assert_eq!(simulation.state().velocities(), [0.0; 3].map(|_| 0.0), "at rest");
+    }
+}
+
+/// A bob that starts level with the pivot at half a rope's length falls freely, goes taut, and swings.
+#[test]
+fn a_rope_goes_taut_and_holds() {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", [0.5, 0.0]));
+    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    let mut simulation = start(builder);
+    let reports = run(&mut simulation, 3.0);
+    let taut = (2.0 * (0.75_f64).sqrt() / G).sqrt();
+    let (time, kind) = events(&reports)[0];
+    assert!((time - taut).abs() < 1e-9, "{time}, expected {taut}");
+    let EventKind::Impact { speed } = kind else { panic!("{kind:?}") };
+    assert!((speed - G * taut * 0.75_f64.sqrt()).abs() < 1e-8, "{speed}");
+    let q = simulation.state().positions();
+    assert!(q[2].hypot(q[3]) <= 1.0 + 1e-10);
+    assert!(simulation.energy_error().abs() < 1e-8);
+}
+
+/// Given v² < 5 g r at the bottom of a loop it leaves where v² has fallen to −g r cos: the rope goes slack at that height.
+#[test]
+fn a_rope_goes_slack_where_its_tension_ends() {
+    let v2 = 3.5 * G;
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_velocity([v2.sqrt(), 0.0]));
+    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    let mut simulation = start(builder);
+    let mut opened = None;
+    for _ in 0..120 {
+        let before = simulation.clone();
+        let report = simulation.step().unwrap();
+        if let Some(event) = report.events.iter().find(|event| event.kind == EventKind::Opened) {
+            let mut there = before;
+            there.advance(event.time - there.state().time()).unwrap();
+            opened = Some(there.state().positions()[3]);
+            break;
+        }
+    }
+    // Height y above the pivot: v² = v₀² − 2g(1 + y) and T = v² − g y = 0 give y = (v₀²/g − 2)/3.
+    let expected = (3.5 - 2.0) / 3.0;
+    assert!((opened.unwrap() - expected).abs() < 1e-8, "{opened:?}, expected {expected}");
+}
+
+/// A pendulum whose rod breaks at 2 mg breaks where 3 cos a = 2, and flies on.
+#[test]
+fn a_rod_breaks_where_its_tension_passes_the_limit() {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
+    builder.constraint("rod", Distance::new(pivot, bob, 1.0).breaking_at(2.0 * G)).force(gravity());
+    let mut simulation = start(builder);
+    let before = simulation.energy().total();
+    let reports = run(&mut simulation, 1.0);
+    let broke = events(&reports);
+    assert_eq!(broke.len(), 1, "{broke:?}");
+    assert_eq!(broke[0].1, EventKind::Broke);
+    // T = 3 m g sin of the angle fallen.
+    let mut whole = systems_pendulum();
+    whole.advance(broke[0].0).unwrap();
+    let sine = -whole.state().positions()[3];
+    assert!((sine - 2.0 / 3.0).abs() < 1e-8, "{sine}");
+    assert!((simulation.energy().total() - before).abs() < 1e-9);
+    assert_eq!(simulation.tension(), [0.0]);
+}
+
+fn systems_pendulum() -> Simulation {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
+    builder.constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
+    start(builder)
+}
+
+#[test]
+fn integrators_without_events_say_so() {
+    for integrator in Integrator::ALL {
+        let mut builder = System::builder(Dimension::Two);
+        let ball = builder.particle(Particle::at("ball", [0.0, 1.0]));
+        builder.constraint("ground", Barrier::new(ball, ground()));
+        let (system, state) = builder.build().unwrap();
+        let outcome = Simulation::new(system, state, settings(integrator, FRAME)).map(|_| ());
+        let refused = matches!(outcome, Err(StepError::NoEvents { .. }));
+        assert_eq!(refused, !integrator.finds_events(), "{integrator}: {outcome:?}");
+    }
+}
+
+/// Lowest point of anything, and the energy, over a run.
+fn settle(builder: SystemBuilder, seconds: f64) -> (Simulation, f64, f64) {
+    let mut simulation = start(builder);
+    let mut energy = simulation.energy().total();
+    let (mut lowest, mut risen) = (0.0_f64, 0.0_f64);
+    for frame in 0..(seconds / FRAME) as usize {
+        simulation.step().unwrap_or_else(|error| panic!("frame {frame}: {error}"));
+        let now = simulation.energy().total();
+        risen = risen.max(now - energy);
+        energy = now;
+        lowest = simulation.state().positions().chunks(2).fold(lowest, |lowest, x| lowest.min(x[1]));
+    }
+    (simulation, lowest, risen)
+}
+
+/// A deck of struts hung from ropes on towers of rods, dropped on the ground with friction.
+fn bridge() -> (SystemBuilder, usize) {
+    let mut builder = System::builder(Dimension::Two);
+    let mut deck = Vec::new();
+    for k in 0..9 {
+        deck.push(builder.particle(Particle::at(format!("deck{k}"), [k as f64, 1.0])));
+    }
+    let towers = [2, 6].map(|k| {
+        let top = builder.particle(Particle::at(format!("top{k}"), [k as f64, 3.5]));
+        let foot = builder.particle(Particle::at(format!("foot{k}"), [k as f64, 0.2]));
+        (k, top, foot)
+    });
+    for k in 0..8 {
+        builder.constraint(format!("plank{k}"), Limits::between(deck[k], deck[k + 1], 0.98, 1.02));
+    }
+    for (k, top, foot) in towers {
+        builder.constraint(format!("mast{k}"), Distance::new(top, foot, 3.3));
+        for i in 0..9 {
+            if (i as i32 - k as i32).abs() <= 2 && i != k {
+                let length = ((i as f64 - k as f64).powi(2) + 2.5 * 2.5).sqrt() * 1.01;
+                builder.constraint(format!("stay{k}-{i}"), Limits::rope(top, deck[i], length));
+            }
+        }
+    }
+    let count = deck.len() + 4;
+    for i in 0..count {
+        let barrier = Barrier { friction: 0.5, restitution: 0.3, ..Barrier::new(ParticleId(i), ground()) };
+        builder.constraint(format!("ground{i}"), barrier);
+    }
+    builder.force(gravity());
+    (builder, count)
+}
+
+#[test]
+fn a_bridge_of_ropes_and_struts_comes_to_rest() {
+    let (builder, _) = bridge();
+    let (simulation, lowest, risen) = settle(builder, 10.0);
+    assert!(lowest > -1e-8, "{lowest:e}");
+    assert!(risen < 1e-9, "{risen:e} J");
+    let fastest = simulation.state().velocities().iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    assert!(fastest < 1e-6, "{fastest:e} m/s");
+}
