@@ -4,10 +4,12 @@
 //! list below.
 
 mod distance;
+mod expression;
 mod nail;
 mod rows;
 
 pub use distance::{Distance, DistanceForm};
+pub use expression::ExpressionConstraint;
 pub use nail::{Nail, NailForm};
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
@@ -25,6 +27,11 @@ pub(crate) trait Holds {
     /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
     fn is_vector(&self) -> bool {
         false
+    }
+
+    /// The only number of dimensions it fits, if there is one.
+    fn dimension(&self) -> Option<usize> {
+        None
     }
 
     /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
@@ -118,6 +125,9 @@ macro_rules! constraints {
             fn is_vector(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.is_vector(),)* }
             }
+            fn dimension(&self) -> Option<usize> {
+                match self { $(Constraint::$kind(constraint) => constraint.dimension(),)* }
+            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Constraint::$kind(constraint) => constraint.particles(),)* }
             }
@@ -170,4 +180,6 @@ constraints! {
     Distance,
     /// One particle at a fixed point.
     Nail,
+    /// An expression that stays zero.
+    ExpressionConstraint,
 }
