@@ -80,6 +80,19 @@ impl<'a> Report<'a> {
         shortened(self.text.get(span.clone()).unwrap_or_default())
     }
 
+    /// Where a piece of a text value stands, whose value is at `span`; the whole value where it is written with escapes.
+    pub(crate) fn piece(&self, span: &Range<usize>, value: &str, piece: &Range<usize>) -> Range<usize> {
+        match self.text.get(span.clone()).and_then(|written| written.find(value)) {
+            Some(quote) if !value.is_empty() => span.start + quote + piece.start..span.start + quote + piece.end,
+            _ => span.clone(),
+        }
+    }
+
+    /// A sentence that quotes the scene, fit for a terminal.
+    pub(crate) fn fitted(&self, sentence: &str) -> String {
+        sentence.chars().map(fit).collect()
+    }
+
     fn on_characters(&self, span: Range<usize>) -> Range<usize> {
         let mut start = span.start.min(self.text.len());
         while !self.text.is_char_boundary(start) {

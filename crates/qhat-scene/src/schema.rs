@@ -9,8 +9,7 @@ use std::sync::LazyLock;
 
 /// The JSON Schema of a scene file, draft 2020-12.
 ///
-/// The reader follows this very schema. Keywords of its own: `x-planned` lists names that are taken for later,
-/// `x-length` says that a list has one number for each dimension. What one key says about another (an id that must
+/// The reader follows this very schema. A keyword of its own: `x-length` says that a list has one entry for each dimension. What one key says about another (an id that must
 /// exist, a fixed particle that must not move) no schema says.
 pub fn json_schema() -> Value {
     schema().clone()

@@ -45,6 +45,8 @@ pub fn shipped() -> &'static [Shipped] {
             "compound-pendulum",
             "double-pendulum",
             "conical-pendulum",
+            "rotating-hoop",
+            "tautochrone",
             "coupled-pendulums",
             "hanging-chain",
             "catenary",

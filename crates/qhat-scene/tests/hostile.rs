@@ -105,3 +105,33 @@ fn the_format_follows_the_name() {
     assert_eq!(Format::from_path("a.json/b.toml"), Format::Toml);
     assert_eq!(Format::from_path("json"), Format::Toml);
 }
+
+/// Each limit of an expression is told at its place, soon, and nothing of it is evaluated.
+#[test]
+fn expressions_are_limited() {
+    let names: Vec<String> = (0..65).map(|i| format!("p{i}")).collect();
+    let particles: Vec<String> = names.iter().map(|name| format!("{{ id = \"{name}\", at = [0, 1] }}")).collect();
+    let load = |residual: &str| {
+        let head = "schema = \"qhat/1\"\nname = \"x\"\ndimension = 2\n";
+        let text = format!(
+            "{head}particles = [{}]\n[[constraints]]\nkind = \"expression\"\nresidual = \"{residual}\"\n",
+            particles.join(", ")
+        );
+        load(&text, "scene.toml", Format::Toml)
+    };
+    let sum = |count: usize| names[..count].iter().map(|name| format!("{name}.x")).collect::<Vec<_>>().join(" + ");
+    assert!(load(&sum(64)).is_ok());
+    for (residual, said) in [
+        (sum(65), "more than 64 different names"),
+        (format!("p0.x{}", " ".repeat(5000)), "at most 4096"),
+        (format!("p0.x{}", " + 1".repeat(600)), "512"),
+        (format!("{}p0.x{}", "(".repeat(100), ")".repeat(100)), "32"),
+        ("p0.x + \u{202E}".to_owned(), "no meaning"),
+    ] {
+        let errors = load(&residual).unwrap_err();
+        assert_eq!(errors.errors.len(), 1, "{errors}");
+        assert!(errors.errors[0].message.contains(said), "{errors}");
+        assert_eq!(errors.errors[0].line, 7);
+        assert!(!errors.to_string().contains(['\u{7f}', '\u{202E}']), "{errors:?}");
+    }
+}

@@ -84,7 +84,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 18] = [
+const BETWEEN_KEYS: [&str; 24] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -103,6 +103,12 @@ const BETWEEN_KEYS: [&str; 18] = [
     "a body without a moment of inertia",
     "the mass of a body",
     "none of its principal moments",
+    "must have 2 entries, but has 1",
+    "the expression is empty",
+    "is not a finite number at the start",
+    "depends on no particle",
+    "is the id of a particle, too",
+    "its scale must be given",
 ];
 
 #[test]

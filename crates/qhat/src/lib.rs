@@ -60,12 +60,13 @@ mod threads;
 
 pub use body::Body;
 pub use constraint::{
-    Barrier, Constraint, Distance, DistanceForm, Formulation, Jacobian, Limits, Nail, NailForm, Surface,
+    Barrier, Constraint, Distance, DistanceForm, ExpressionConstraint, Formulation, Jacobian, Limits, Nail, NailForm,
+    Surface,
 };
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
-pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
+pub use force::{Drag, ExpressionForce, ExpressionPotential, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;

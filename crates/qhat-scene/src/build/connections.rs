@@ -1,7 +1,7 @@
 //! `[[constraints]]`, `[[springs]]` and `[[loads]]`: what refers to particles.
 
 use super::Assembly;
-use crate::model::{Constraint, Distance, Id, Load, Nail, Name, PointLoad, Spring};
+use crate::model::{Constraint, Distance, ExpressionConstraint, Id, Load, Nail, Name, PointLoad, Spring};
 use crate::tree::Node;
 use qhat::{ParticleId, PointForce};
 
@@ -9,7 +9,9 @@ impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
     pub(super) fn take_constraint_names(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
-            let (Constraint::Distance(Distance { id, .. }) | Constraint::Nail(Nail { id, .. })) = constraint;
+            let (Constraint::Distance(Distance { id, .. })
+            | Constraint::Nail(Nail { id, .. })
+            | Constraint::Expression(ExpressionConstraint { id, .. })) = constraint;
             if let Some(Name(name)) = id
                 && !self.constraint_names.insert(name.clone())
             {
@@ -37,6 +39,7 @@ impl Assembly<'_, '_, '_> {
             match constraint {
                 Constraint::Distance(distance) => self.add_distance(distance, place),
                 Constraint::Nail(nail) => self.add_nail(nail, place),
+                Constraint::Expression(expression) => self.add_expression_constraint(expression, place),
             };
         }
     }
@@ -108,11 +111,18 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_loads(&mut self, loads: &[Load]) {
         for (index, load) in loads.iter().enumerate() {
             let place = self.tree.key("loads").item(index);
-            let Load::Point(PointLoad { particle, force }) = load;
-            if let Some(particle) = self.particle(particle, place.key("particle")) {
-                self.builder.force(PointForce { particle, force: force.padded() });
-            }
+            match load {
+                Load::Point(point) => self.add_point_load(point, place),
+                Load::Force(force) => self.add_expression_force(force, place),
+                Load::Potential(potential) => self.add_expression_potential(potential, place),
+            };
         }
+    }
+
+    fn add_point_load(&mut self, PointLoad { particle, force }: &PointLoad, place: &Node) -> Option<()> {
+        let particle = self.particle(particle, place.key("particle"))?;
+        self.builder.force(PointForce { particle, force: force.padded() });
+        Some(())
     }
 
     /// Two different particles.

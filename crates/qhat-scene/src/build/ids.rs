@@ -35,17 +35,27 @@ impl Ids {
         if let Some((first, last)) = self.numbered_like(id) {
             return format!("they go from `{first}` to `{last}`");
         }
-        // Those that share the beginning come first: among a thousand of a chain they are the likely ones.
-        let beginning: String = id.chars().take(1).collect();
-        let alike = self.known.range(beginning.clone()..).take_while(|(known, _)| known.starts_with(&beginning));
-        let names = alike.map(|(known, _)| known).chain(self.known.keys()).map(String::as_str);
-        if let Some(name) = nearest(id, names) {
+        if let Some(name) = nearest(id, self.alike(id)) {
             return format!("did you mean `{name}`?");
         }
         const SHOWN: usize = 8;
         let shown: Vec<String> = self.known.keys().take(SHOWN).map(|known| format!("`{known}`")).collect();
         let rest = if self.known.len() > SHOWN { ", …" } else { "" };
         format!("the particles are {}{rest}", shown.join(", "))
+    }
+
+    /// An id in a text whose letters an expression cannot read as a name.
+    pub(super) fn without_name<'a>(&'a self, text: &str) -> Option<&'a str> {
+        let is_name =
+            |id: &str| id.chars().all(|letter| letter.is_alphabetic() || letter.is_ascii_digit() || letter == '_');
+        self.known.keys().map(String::as_str).find(|id| !is_name(id) && text.contains(id))
+    }
+
+    /// All ids; those that share the beginning come first: among a thousand of a chain they are the likely ones.
+    pub(super) fn alike(&self, id: &str) -> impl Iterator<Item = &str> {
+        let beginning: String = id.chars().take(1).collect();
+        let from = self.known.range(beginning.clone()..).map(|(known, _)| known);
+        from.take_while(move |known| known.starts_with(&beginning)).chain(self.known.keys()).map(String::as_str)
     }
 
     /// The first and last of several ids that differ from this one only in their number.

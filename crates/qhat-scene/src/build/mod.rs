@@ -4,6 +4,7 @@
 mod bodies;
 mod connections;
 mod expectations;
+mod expressions;
 mod generated;
 mod ids;
 mod particles;
@@ -12,6 +13,7 @@ use crate::model::Document;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::tree::Node;
+use expressions::Untried;
 use ids::Ids;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
 use std::collections::HashSet;
@@ -29,6 +31,8 @@ struct Assembly<'a, 'r, 't> {
     positions: Vec<f64>,
     ids: Ids,
     constraint_names: HashSet<String>,
+    /// Forces as expressions, to be tried where the scene starts.
+    untried: Vec<Untried>,
 }
 
 /// The scene, or `None` after telling what is wrong with it.
@@ -42,9 +46,10 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         positions: Vec::new(),
         ids: Ids::default(),
         constraint_names: HashSet::new(),
+        untried: Vec::new(),
     };
     assembly.add_all(&document)?;
-    let Assembly { builder, report, ids, .. } = assembly;
+    let Assembly { builder, report, ids, untried, .. } = assembly;
     let (system, state) = match builder.build() {
         Ok(built) => built,
         Err(error) => {
@@ -52,6 +57,10 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
             return None;
         }
     };
+    untried.iter().for_each(|force| force.try_at(&state, report));
+    if !report.is_empty() {
+        return None;
+    }
     let step = &document.step;
     let settings = Settings {
         h: step.h,

@@ -20,7 +20,19 @@ impl<'a> Meaning<'a> {
 
     /// What the entries of this list are.
     pub(super) fn entry(&self, root: &'a Json) -> Option<Self> {
-        Some(Meaning { list: Some(self.schema), ..Meaning::of(root, self.get("items")?) })
+        Some(Meaning { list: Some(self.list.unwrap_or(self.schema)), ..Meaning::of(root, self.get("items")?) })
+    }
+
+    /// What the values of this table are, where its keys are names that the scene gives.
+    pub(super) fn names(&self, root: &'a Json) -> Option<Self> {
+        let inner = self.get("additionalProperties").filter(|inner| inner.is_object())?;
+        Some(Meaning { list: Some(self.schema), ..Meaning::of(root, inner) })
+    }
+
+    /// What else it may be, where values of more than one type are allowed.
+    pub(super) fn alternatives(&self) -> impl Iterator<Item = Self> + use<'a> {
+        let words = self.schema;
+        self.list("anyOf").map(move |schema| Meaning { schema, target: None, list: Some(words) })
     }
 
     fn get(&self, keyword: &str) -> Option<&'a Json> {
@@ -49,10 +61,6 @@ impl<'a> Meaning<'a> {
 
     pub(super) fn required(&self) -> impl Iterator<Item = &'a str> + use<'a> {
         self.list("required").filter_map(Json::as_str)
-    }
-
-    pub(super) fn planned(&self) -> impl Iterator<Item = &'a str> + use<'a> {
-        self.list("x-planned").filter_map(Json::as_str)
     }
 
     /// The kinds of a tagged table, each with its own schema.
@@ -85,6 +93,7 @@ impl<'a> Meaning<'a> {
             "number" => "a number",
             "boolean" => "true or false",
             _ if self.is_tagged() => "a table",
+            _ if self.alternatives().next().is_some() => "text or a list of texts",
             _ => "text",
         }
     }

@@ -44,9 +44,13 @@ impl<'a> Checker<'a, '_, '_> {
             return self.tagged(node, meaning, name);
         }
         if let Some(choices) = meaning.choices() {
-            return self.choice(node, meaning, name, &choices);
+            return self.choice(node, name, &choices);
+        }
+        if let Some(alternative) = meaning.alternatives().find(|alternative| agrees(alternative.text("type"), node)) {
+            return self.value(node, alternative, name);
         }
         match (meaning.text("type"), &node.value) {
+            ("object", Value::Table(entries)) if meaning.names(self.root).is_some() => self.map(entries, meaning, name),
             ("object", Value::Table(entries)) => self.table(node, entries, meaning, name),
             ("array", Value::List(items)) => self.list(node, items, meaning, name),
             ("string", Value::Text(text)) => self.text(node, text, meaning, name),
@@ -76,7 +80,7 @@ impl<'a> Checker<'a, '_, '_> {
         match meaning.kinds().find(|(kind, _)| kind == given) {
             Some((_, branch)) => self.table(node, entries, Meaning::of(self.root, branch), name),
             None => {
-                self.unknown_choice(tag, given, meaning, "kind", &kinds);
+                self.unknown_choice(tag, given, "kind", &kinds);
                 self.gap()
             }
         }
@@ -123,6 +127,19 @@ impl<'a> Checker<'a, '_, '_> {
             }
         }
         if complete { Some(Json::Object(table)) } else { self.gap() }
+    }
+
+    /// A table whose keys are names that the scene gives.
+    fn map(&mut self, entries: &[Entry], meaning: Meaning<'a>, name: &str) -> Option<Json> {
+        let inner = meaning.names(self.root)?;
+        let mut map = serde_json::Map::new();
+        for entry in entries {
+            if let Some(value) = self.value(&entry.node, inner, &format!("{name}[{}]", self.report.fitted(&entry.key)))
+            {
+                map.insert(entry.key.clone(), value);
+            }
+        }
+        if map.len() == entries.len() { Some(Json::Object(map)) } else { self.gap() }
     }
 
     fn list(&mut self, node: &Node, items: &[Node], meaning: Meaning<'a>, name: &str) -> Option<Json> {
@@ -175,7 +192,7 @@ impl<'a> Checker<'a, '_, '_> {
         Some(Json::String(text.to_owned()))
     }
 
-    fn choice(&mut self, node: &Node, meaning: Meaning<'a>, name: &str, choices: &[&str]) -> Option<Json> {
+    fn choice(&mut self, node: &Node, name: &str, choices: &[&str]) -> Option<Json> {
         let Value::Text(given) = &node.value else {
             let message = format!("`{name}` must be text, but is {}", self.found(node));
             self.report.error(node.span.clone(), message, Some(format!("use {}", listed(choices))));
@@ -184,23 +201,18 @@ impl<'a> Checker<'a, '_, '_> {
         if choices.contains(&given.as_str()) {
             return Some(Json::String(given.clone()));
         }
-        self.unknown_choice(node, given, meaning, name, choices);
+        self.unknown_choice(node, given, name, choices);
         None
     }
 
-    fn unknown_choice(&mut self, node: &Node, given: &str, meaning: Meaning<'a>, name: &str, choices: &[&str]) {
+    fn unknown_choice(&mut self, node: &Node, given: &str, name: &str, choices: &[&str]) {
         let quoted = self.report.quoted(given);
         let list = listed(choices);
-        let (message, help) = if meaning.planned().any(|planned| planned == given) {
-            (format!("{name} {quoted} is planned, but does not exist yet"), format!("use {list}"))
-        } else {
-            let help = match nearest(given, choices.iter().copied()) {
-                Some(choice) if choices.len() > 1 => format!("did you mean `{choice}`? it is {list}"),
-                _ => format!("use {list}"),
-            };
-            (format!("unknown {name} {quoted}"), help)
+        let help = match nearest(given, choices.iter().copied()) {
+            Some(choice) if choices.len() > 1 => format!("did you mean `{choice}`? it is {list}"),
+            _ => format!("use {list}"),
         };
-        self.report.error(node.span.clone(), message, Some(help));
+        self.report.error(node.span.clone(), format!("unknown {name} {quoted}"), Some(help));
     }
 
     fn mismatch(&mut self, node: &Node, meaning: Meaning<'a>, name: &str) -> Option<Json> {
@@ -212,7 +224,12 @@ impl<'a> Checker<'a, '_, '_> {
 
     fn help(&self, meaning: Meaning<'a>, name: &str) -> String {
         let dimension = self.dimension.filter(|_| meaning.is_vector());
-        let numbers = dimension.map(|d| format!("; {d} numbers, as the dimension is {d}"));
+        let entries = if meaning.entry(self.root).is_some_and(|entry| entry.text("type") == "string") {
+            "texts"
+        } else {
+            "numbers"
+        };
+        let numbers = dimension.map(|d| format!("; {d} {entries}, as the dimension is {d}"));
         format!("{}{}", meaning.help(name), numbers.unwrap_or_default())
     }
 
@@ -231,6 +248,11 @@ impl<'a> Checker<'a, '_, '_> {
         self.has_gaps = true;
         None
     }
+}
+
+/// Whether a value is of a type of the schema.
+fn agrees(kind: &str, node: &Node) -> bool {
+    matches!((kind, &node.value), ("string", Value::Text(_)) | ("array", Value::List(_)))
 }
 
 /// A key in backticks; a phrase as it is.

@@ -1,16 +1,16 @@
 //! `[[constraints]]`, `[[springs]]` and `[[loads]]`.
 
-use super::{Id, Name, Vector};
+use super::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What holds exactly.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-#[schemars(extend("x-planned" = ["expression"]))]
 pub(crate) enum Constraint {
     Distance(Distance),
     Nail(Nail),
+    Expression(ExpressionConstraint),
 }
 
 /// A rod: two particles stay as far apart as they are.
@@ -115,11 +115,13 @@ pub(crate) struct Spring {
     pub(crate) rest: Option<f64>,
 }
 
-/// A force on single particles.
+/// A force.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub(crate) enum Load {
     Point(PointLoad),
+    Force(ExpressionForce),
+    Potential(ExpressionPotential),
 }
 
 /// A constant force on one particle.

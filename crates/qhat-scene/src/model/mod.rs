@@ -4,12 +4,14 @@
 pub(crate) mod body;
 mod constraint;
 mod expect;
+mod expression;
 pub(crate) mod generate;
 mod step;
 mod value;
 
 pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
+pub(crate) use expression::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
 pub(crate) use generate::Generate;
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
@@ -52,7 +54,7 @@ pub(crate) struct Document {
     /// The springs, which give.
     #[serde(default)]
     pub(crate) springs: Vec<Spring>,
-    /// Forces on single particles.
+    /// Forces beside gravity, drag and springs.
     #[serde(default)]
     pub(crate) loads: Vec<Load>,
     /// Particles by the dozen, with what connects them.

@@ -5,12 +5,14 @@
 
 mod barrier;
 mod distance;
+mod expression;
 mod limits;
 mod nail;
 mod rows;
 
 pub use barrier::{Barrier, Surface};
 pub use distance::{Distance, DistanceForm};
+pub use expression::ExpressionConstraint;
 pub use limits::Limits;
 pub use nail::{Nail, NailForm};
 pub use rows::Jacobian;
@@ -30,6 +32,11 @@ pub(crate) trait Holds {
     /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
     fn is_vector(&self) -> bool {
         false
+    }
+
+    /// The only number of dimensions it fits, if there is one.
+    fn dimension(&self) -> Option<usize> {
+        None
     }
 
     /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
@@ -161,6 +168,9 @@ macro_rules! constraints {
             fn is_vector(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.is_vector(),)* }
             }
+            fn dimension(&self) -> Option<usize> {
+                match self { $(Constraint::$kind(constraint) => constraint.dimension(),)* }
+            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Constraint::$kind(constraint) => constraint.particles(),)* }
             }
@@ -223,4 +233,6 @@ constraints! {
     Limits,
     /// One particle on one side of a surface.
     Barrier,
+    /// An expression that stays zero.
+    ExpressionConstraint,
 }

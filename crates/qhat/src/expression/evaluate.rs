@@ -33,10 +33,11 @@
 //! Nothing is allocated: the numbers of a tape lie on the stack, in the smallest of three sizes that holds them.
 //! Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), chapters 3, 5 and 10.
 
-use super::MAX_INSTRUCTIONS;
 use super::operation::Operation;
 use super::tape::Instruction::*;
 use super::tape::{Input, Tape};
+use super::{MAX_INSTRUCTIONS, MAX_NAMES};
+use crate::linalg::block::{Block, zero};
 
 /// Value and derivatives along the curve (q + τ q̇, t + τ), at τ = 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -170,6 +171,34 @@ impl Tape {
                 let entry = room[i.slot][ADJOINT_CHANGE];
                 H[i.place * n + j.place] = entry;
                 H[j.place * n + i.place] = entry;
+            }
+        }
+    }
+
+    /// Calls `visit(i, j, block)`, i ≤ j, with the blocks of ∂²C/∂x² between its particles; not where one is zero.
+    pub(super) fn hessian_blocks<const D: usize>(
+        &self,
+        at: At<'_>,
+        room: &mut [Numbers],
+        visit: &mut impl FnMut(usize, usize, Block<D>),
+    ) {
+        self.values(at, room);
+        self.adjoints(room);
+        let mut above = [zero::<D>(); MAX_NAMES];
+        for (j, _) in self.particles.iter().enumerate() {
+            above[..=j].fill(zero());
+            for column in self.positions.iter().filter(|input| input.place / D == j) {
+                self.column(room, column);
+                for row in self.positions.iter().filter(|input| input.place <= column.place) {
+                    let (entry, k, l) = (room[row.slot][ADJOINT_CHANGE], row.place % D, column.place % D);
+                    above[row.place / D][k][l] = entry;
+                    if row.place / D == j {
+                        above[j][l][k] = entry;
+                    }
+                }
+            }
+            for (i, block) in above[..=j].iter().enumerate().filter(|(_, block)| **block != zero()) {
+                visit(i, j, *block);
             }
         }
     }

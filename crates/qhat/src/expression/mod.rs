@@ -34,6 +34,8 @@ pub use error::ExpressionError;
 pub use evaluate::Jet;
 pub use scope::{Purpose, Scope, check_parameter};
 
+use crate::linalg::block::Block;
+use crate::point::Motion;
 use crate::system::ParticleId;
 use evaluate::{At, with_room};
 use std::fmt;
@@ -46,6 +48,8 @@ pub const MAX_BYTES: usize = 4096;
 pub const MAX_NODES: usize = 512;
 /// Different names of particles and parameters.
 pub const MAX_NAMES: usize = 64;
+/// Numbers of the longest gradient: d = 3 of each particle.
+pub(crate) const LONGEST_GRADIENT: usize = 3 * MAX_NAMES;
 /// Brackets, signs and powers open at once. Parsing recurses so deep: unoptimised, 64 with a summand and a factor before each bracket
 /// overflowed a stack of 512 kB and 32 fit; a page has 1 MB.
 pub const MAX_DEPTH: usize = 32;
@@ -161,6 +165,21 @@ impl Expression {
     /// Where `hessian` is shorter.
     pub fn hessian(&self, q: &[f64], qd: &[f64], t: f64, hessian: &mut [f64]) {
         self.run(|tape, room| tape.hessian(At { q, qd, t }, room, self.gradient_len(), hessian));
+    }
+
+    /// Calls `visit(i, j, block)`, i ≤ j counting its particles, with the blocks of ∂²C/∂x² [C/m²]; not where one is zero.
+    pub(crate) fn hessian_blocks<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(usize, usize, Block<D>),
+    ) {
+        let Motion { q, qd, t } = motion;
+        self.run(|tape, room| tape.hessian_blocks(At { q, qd, t }, room, visit));
+    }
+
+    /// d of the scope it was parsed in.
+    pub(crate) fn dimension(&self) -> usize {
+        self.parsed.dimension
     }
 
     fn write(&self, inputs: &[Input], room: &[evaluate::Numbers], gradient: &mut [f64]) {

@@ -3,12 +3,14 @@
 //! To add a force: write one file here with `add`, `potential`, `power`, `stiffness` and `tangent`, and name it in the list below.
 
 mod drag;
+mod expression;
 mod gravity;
 mod mouse;
 mod point_force;
 mod spring;
 
 pub use drag::Drag;
+pub use expression::{ExpressionForce, ExpressionPotential};
 pub use gravity::Gravity;
 pub use mouse::MouseSpring;
 pub use point_force::PointForce;
@@ -44,6 +46,11 @@ pub(crate) trait Acts {
         rate: f64,
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     );
+
+    /// The only number of dimensions it fits, if there is one.
+    fn dimension(&self) -> Option<usize> {
+        None
+    }
 
     /// The particles this force names, each once; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
@@ -97,6 +104,9 @@ macro_rules! forces {
             ) {
                 match self { $(Force::$kind(force) => force.tangent(motion, rate, visit),)* }
             }
+            fn dimension(&self) -> Option<usize> {
+                match self { $(Force::$kind(force) => force.dimension(),)* }
+            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }
             }
@@ -118,6 +128,10 @@ forces! {
     PointForce,
     /// Damped spring between one particle and a point that a hand moves.
     MouseSpring,
+    /// A force on one particle, an expression for each component.
+    ExpressionForce,
+    /// A potential energy as an expression.
+    ExpressionPotential,
 }
 
 /// `Ok` if the number is finite; otherwise a sentence that names it.

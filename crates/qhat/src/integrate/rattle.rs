@@ -251,7 +251,9 @@ fn substep<const D: usize>(
     let mut error = 0.0_f64;
     for k in 0..qd.len() {
         let forces = 0.5 * h * h * (equation.WQ[k] - scratch.WQ[k]);
-        error = error.max((forces + h * scratch.kick[k] - scratch.push[k]).abs());
+        let part = (forces + h * scratch.kick[k] - scratch.push[k]).abs();
+        // What is not a number stays, so that the step is not kept.
+        error = if error.is_nan() || part <= error { error } else { part };
     }
     Some((ERROR_SCALE * error / system.extent, iterations))
 }

@@ -1,0 +1,161 @@
+//! What is written as expressions. Their errors point into the text of the scene.
+
+use super::Assembly;
+use crate::model::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Name, Parameters, Residual};
+use crate::report::Report;
+use crate::suggest::nearest;
+use crate::tree::{Node, Value};
+use qhat::expression::check_parameter;
+use qhat::{Dimension, Expression, Purpose, Scope, State};
+use std::ops::Range;
+
+/// A force or potential that has yet to show that it is a number where the scene starts.
+pub(super) struct Untried {
+    expression: Expression,
+    place: Range<usize>,
+}
+
+impl Untried {
+    pub(super) fn try_at(&self, state: &State, report: &mut Report<'_>) {
+        let Untried { expression, place } = self;
+        let mut slopes = vec![0.0; 2 * expression.gradient_len()];
+        let (by_position, by_velocity) = slopes.split_at_mut(expression.gradient_len());
+        let value = expression.gradient(state.positions(), state.velocities(), 0.0, by_position, by_velocity);
+        if !value.is_finite() || slopes.iter().any(|slope| !slope.is_finite()) {
+            let message = "this or a derivative of it is not a finite number at the start";
+            let help = "it must have a value where the particles start, at t = 0";
+            report.error(place.clone(), message, Some(help.into()));
+        }
+    }
+}
+
+impl Assembly<'_, '_, '_> {
+    pub(super) fn add_expression_constraint(&mut self, given: &ExpressionConstraint, place: &Node) -> Option<()> {
+        self.check_parameters(&given.parameters, place)?;
+        let (texts, is_list) = match &given.residual {
+            Residual::One(text) => (std::slice::from_ref(text), false),
+            Residual::Several(texts) => (&texts[..], true),
+        };
+        let name = match &given.id {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name("expression".into()),
+        };
+        let place = place.key("residual");
+        for (k, text) in texts.iter().enumerate() {
+            let place = place.item(k);
+            let expression = self.expression(text, Purpose::Constraint, &given.parameters, place)?;
+            let constraint = qhat::ExpressionConstraint::new(expression, &self.positions);
+            let constraint = match given.scale {
+                Some(scale) => constraint.with_scale(scale),
+                None => constraint,
+            };
+            if let Err(message) = constraint.check() {
+                // The number of a scale has passed the schema: what is wrong is one of these.
+                let help = if constraint.expression().particles().is_empty() {
+                    "write it in the coordinates of particles"
+                } else if given.scale.is_none() && constraint.with_scale(1.0).check().is_ok() {
+                    "add `scale`, the size of the residual that counts as a relative error of 1"
+                } else {
+                    "C(q, t) and its derivatives must be finite numbers where the particles start, at t = 0"
+                };
+                self.report.error(place.span.clone(), message, Some(help.into()));
+                return None;
+            }
+            let row = if is_list { format!("{name}[{k}]") } else { name.clone() };
+            self.builder.constraint(row, constraint);
+        }
+        Some(())
+    }
+
+    pub(super) fn add_expression_force(&mut self, given: &ExpressionForce, place: &Node) -> Option<()> {
+        let particle = self.particle(&given.particle, place.key("particle"))?;
+        self.check_parameters(&given.parameters, place)?;
+        let mut components = Vec::new();
+        for (k, text) in given.force.iter().enumerate() {
+            let place = place.key("force").item(k);
+            let component = self.expression(text, Purpose::Force, &given.parameters, place)?;
+            self.untried.push(Untried { expression: component.clone(), place: place.span.clone() });
+            components.push(component);
+        }
+        self.builder.force(qhat::ExpressionForce { particle, components });
+        Some(())
+    }
+
+    pub(super) fn add_expression_potential(&mut self, given: &ExpressionPotential, place: &Node) -> Option<()> {
+        self.check_parameters(&given.parameters, place)?;
+        let place = place.key("potential");
+        let potential = self.expression(&given.potential, Purpose::Potential, &given.parameters, place)?;
+        if potential.particles().is_empty() {
+            let message = "the potential depends on no particle, so that it pulls nothing";
+            self.report.error(place.span.clone(), message, Some("write it in the coordinates of particles".into()));
+            return None;
+        }
+        self.untried.push(Untried { expression: potential.clone(), place: place.span.clone() });
+        self.builder.force(qhat::ExpressionPotential { potential });
+        Some(())
+    }
+
+    /// The expression of a text whose value stands at `place`.
+    fn expression(
+        &mut self,
+        text: &str,
+        purpose: Purpose,
+        parameters: &Parameters,
+        place: &Node,
+    ) -> Option<Expression> {
+        let ids = &self.ids;
+        let suggest = |name: &str, own: &[&'static str]| {
+            let names = parameters.keys().map(String::as_str).chain(own.iter().copied());
+            nearest(name, names.chain(ids.alike(name))).map(str::to_owned)
+        };
+        let scope = Scope {
+            purpose,
+            dimension: if self.dimension == 2 { Dimension::Two } else { Dimension::Three },
+            particle: &|name| ids.find(name),
+            parameter: &|name| parameters.get(name).copied(),
+            suggest: &suggest,
+        };
+        let error = match Expression::parse(text, &scope) {
+            Ok(expression) => return Some(expression),
+            Err(error) => error,
+        };
+        let span = self.report.piece(&place.span, text, &error.span);
+        let help = match self.ids.without_name(text) {
+            Some(id) => Some(format!(
+                "{} cannot be named in expressions, where names are made of letters, `_` and the digits 0 to 9",
+                self.report.quoted(id)
+            )),
+            None => error.help.map(|help| self.report.fitted(&help)),
+        };
+        self.report.error(span, self.report.fitted(&error.message), help);
+        None
+    }
+
+    fn check_parameters(&mut self, parameters: &Parameters, place: &Node) -> Option<()> {
+        let mut is_clean = true;
+        for (name, &value) in parameters {
+            let wrong = match check_parameter(name, value) {
+                Err(message) => Some((message, None)),
+                Ok(()) => self.ids.find(name).map(|_| {
+                    let message = format!("{} is the id of a particle, too", self.report.quoted(name));
+                    (message, Some("give the parameter another name".to_owned()))
+                }),
+            };
+            if let Some((message, help)) = wrong {
+                let span = key_span(place.key("parameters"), name);
+                self.report.error(span, self.report.fitted(&message), help);
+                is_clean = false;
+            }
+        }
+        is_clean.then_some(())
+    }
+}
+
+/// Where a key of a table stands.
+fn key_span(table: &Node, key: &str) -> Range<usize> {
+    match &table.value {
+        Value::Table(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| entry.key_span.clone()),
+        _ => None,
+    }
+    .unwrap_or_else(|| table.span.clone())
+}

@@ -1,0 +1,177 @@
+//! Expression: C(q, t) = 0 as written by a user; one row, [C] is what the text makes of it.
+//!
+//! ```text
+//! C, Ċ = J q̇ + C_t, γ = (∂(Jq̇)/∂q) q̇ + 2 J_t q̇ + C_tt, J and C_t     in two passes over the expression
+//! ∂²C/∂q²     in one for each coordinate; −λ ∂²C/∂q² has no sign that is known
+//! ```
+//!
+//! Several residuals are several constraints: each row then touches its own particles only and has a scale of its own.
+//!
+//! Scale: by how much C changes, to second order, where one particle moves by the length L of the system [m],
+//!
+//! ```text
+//! scale = max_i max(|∂C/∂x_i| L, ½ |∂²C/∂x_i²| L²)     at the start, unless it is given [C]; of ∂²C/∂x_i² the largest entry
+//! ```
+//!
+//! so that a tolerance means the same for `dist(a, b) - r`, its square, a thousandfold of it, and a square whose gradient
+//! vanishes where it holds. It is measured once and stays.
+//!
+//! Fails where C or a derivative is not finite. At the start that is refused; later all of the row becomes NaN, so that no
+//! method takes it for zero, and the step ends in `StepError`.
+
+use super::{Formulation, Holds, RowWriter};
+use crate::expression::{Expression, LONGEST_GRADIENT};
+use crate::linalg::block::Block;
+use crate::point::{Motion, Point, norm};
+use crate::stiffness::Stiffness;
+use crate::system::ParticleId;
+
+/// An expression that stays zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpressionConstraint {
+    expression: Expression,
+    /// What C does around the start.
+    start: Start,
+    /// [C], where it was given.
+    scale: Option<f64>,
+}
+
+/// max |∂C/∂x_i| [C/m] and the largest entry of any ∂²C/∂x_i² [C/m²] at the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Start {
+    slope: f64,
+    bend: f64,
+    is_finite: bool,
+}
+
+impl ExpressionConstraint {
+    /// Holds an expression at zero. `positions` are those of all particles at the start [m], d·n numbers: the scale of the row
+    /// is measured there, at t = 0.
+    pub fn new(expression: Expression, positions: &[f64]) -> Self {
+        let d = expression.dimension();
+        // What is not there is refused where the system is built.
+        let is_there = expression.particles().iter().all(|id| d * (id.0 + 1) <= positions.len());
+        let start = match d {
+            _ if !is_there => Start { slope: 0.0, bend: 0.0, is_finite: true },
+            2 => Start::measure::<2>(&expression, positions),
+            _ => Start::measure::<3>(&expression, positions),
+        };
+        ExpressionConstraint { expression, start, scale: None }
+    }
+
+    /// The same with a scale [C], above 0, that is given: the |C| that counts as a relative error of one.
+    pub fn with_scale(self, scale: f64) -> Self {
+        ExpressionConstraint { scale: Some(scale), ..self }
+    }
+
+    /// The expression.
+    pub fn expression(&self) -> &Expression {
+        &self.expression
+    }
+
+    /// What is wrong with it, in words.
+    ///
+    /// # Errors
+    /// No particle, velocities, numbers that are not finite at the start, no scale.
+    pub fn check(&self) -> Result<(), String> {
+        if self.expression.uses_velocities() {
+            return Err("a constraint may depend on positions and time only, not on velocities".into());
+        }
+        if self.expression.particles().is_empty() {
+            return Err("the residual depends on no particle, so that nothing could hold it at zero".into());
+        }
+        if !self.start.is_finite {
+            return Err("the residual or a derivative of it is not a finite number at the start".into());
+        }
+        match self.scale {
+            Some(scale) if scale.is_finite() && scale > 0.0 => Ok(()),
+            Some(scale) => Err(format!("the scale of a residual must be above 0, but is {scale}")),
+            None if self.start.slope > 0.0 || self.start.bend > 0.0 => Ok(()),
+            None => Err("no position changes the residual at the start, so that its scale must be given".into()),
+        }
+    }
+}
+
+impl Start {
+    fn measure<const D: usize>(expression: &Expression, q: &[f64]) -> Self {
+        let qd = vec![0.0; q.len()];
+        let mut gradient = [0.0; LONGEST_GRADIENT];
+        let (jet, Ct) = expression.jet_and_gradient(q, &qd, 0.0, &mut gradient);
+        let gradient = &gradient[..expression.gradient_len()];
+        let is_finite = [jet.value, jet.second, Ct].iter().chain(gradient).all(|number| number.is_finite());
+        let slope = gradient.chunks_exact(D).map(|g| norm(point::<D>(g))).fold(0.0, f64::max);
+        let mut bend = 0.0_f64;
+        let mut is_bounded = true;
+        expression.hessian_blocks::<D>(Motion { q, qd: &qd, t: 0.0 }, &mut |i, j, block| {
+            is_bounded &= size(&block).is_finite();
+            if i == j {
+                bend = block.iter().flatten().fold(bend, |most, entry| most.max(entry.abs()));
+            }
+        });
+        Start { slope, bend, is_finite: is_finite && is_bounded }
+    }
+}
+
+impl Holds for ExpressionConstraint {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn dimension(&self) -> Option<usize> {
+        Some(self.expression.dimension())
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.expression.particles().to_vec()
+    }
+
+    fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
+        let mut gradient = [0.0; LONGEST_GRADIENT];
+        let (C, Ct) = self.expression.jet_and_gradient(motion.q, motion.qd, motion.t, &mut gradient);
+        // Where C has no value its slope may still have one: 1/x of ln x at −1.
+        let lost = if C.value.is_finite() { 0.0 } else { f64::NAN };
+        let blocks = gradient[..self.expression.gradient_len()].chunks_exact(D);
+        let J = blocks.map(|g| point::<D>(g).map(|component| component + lost));
+        rows.write_driven(C.value + lost, C.first + lost, C.second + lost, Ct + lost, J);
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        let Start { slope, bend, .. } = self.start;
+        self.scale.unwrap_or_else(|| (slope * extent).max(0.5 * bend * extent * extent))
+    }
+
+    fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let mut largest = 0.0_f64;
+        self.expression.hessian_blocks(motion, &mut |_, _, block: Block<D>| largest = largest.max(size(&block)));
+        largest
+    }
+
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    ) {
+        self.expression.hessian_blocks(motion, &mut |i, j, block: Block<D>| {
+            visit(i, j, Stiffness::Indefinite(block.map(|row| row.map(|entry| -lambda[0] * entry))));
+        });
+    }
+
+    /// As it is written, in both.
+    fn formulated(&self, _: Formulation) -> Self {
+        self.clone()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.check()
+    }
+}
+
+fn point<const D: usize>(numbers: &[f64]) -> Point<D> {
+    std::array::from_fn(|k| numbers[k])
+}
+
+/// The Frobenius norm, at least the spectral one.
+fn size<const D: usize>(block: &Block<D>) -> f64 {
+    block.iter().flatten().map(|entry| entry * entry).sum::<f64>().sqrt()
+}
