@@ -9,10 +9,8 @@ pub(crate) enum Stiffness<const D: usize> {
     /// semidefinite, of either sign.
     Difference(Block<D>),
     /// Row i, column j, with the transpose implied: one block of a positive semidefinite matrix that is handed over whole.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the first force on three particles will construct it"))]
     Definite(Block<D>),
     /// The same of a matrix whose sign is not known.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the first constraint on three particles will construct it"))]
     Indefinite(Block<D>),
 }
 
