@@ -84,7 +84,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 18] = [
+const BETWEEN_KEYS: [&str; 23] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -103,6 +103,11 @@ const BETWEEN_KEYS: [&str; 18] = [
     "a body without a moment of inertia",
     "the mass of a body",
     "none of its principal moments",
+    "is named twice",
+    " charges for ",
+    "in two dimensions needs an `outline`",
+    "an arm of this hinge",
+    "the gradient of the wind",
 ];
 
 #[test]

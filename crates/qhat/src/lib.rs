@@ -62,7 +62,9 @@ pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, 
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
-pub use force::{Actuator, AirDrag, CentralForce, CubicSpring, Facet, HarmonicForce, InverseSquare, Pressure, TorsionSpring};
+pub use force::{
+    Actuator, AirDrag, CentralForce, CubicSpring, Facet, HarmonicForce, InverseSquare, Pressure, TorsionSpring,
+};
 pub use force::{Drag, Force, Gravity, MouseSpring, PointForce, Spring};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};

@@ -6,6 +6,7 @@ mod connections;
 mod expectations;
 mod generated;
 mod ids;
+mod loads;
 mod particles;
 
 use crate::model::Document;
@@ -13,6 +14,7 @@ use crate::report::Report;
 use crate::scene::Scene;
 use crate::tree::Node;
 use ids::Ids;
+use loads::Inertia;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
 use std::collections::HashSet;
 
@@ -27,6 +29,8 @@ struct Assembly<'a, 'r, 't> {
     dimension: usize,
     /// x [m], flat, for lengths that are left out.
     positions: Vec<f64>,
+    /// Of each particle, for loads that depend on it.
+    inertias: Vec<Inertia>,
     ids: Ids,
     constraint_names: HashSet<String>,
 }
@@ -40,6 +44,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         builder: System::builder(dimension),
         dimension: number,
         positions: Vec::new(),
+        inertias: Vec::new(),
         ids: Ids::default(),
         constraint_names: HashSet::new(),
     };

@@ -1,4 +1,4 @@
-//! `[[constraints]]`, `[[springs]]` and `[[loads]]`.
+//! `[[constraints]]` and `[[springs]]`.
 
 use super::{Id, Name, Vector};
 use schemars::JsonSchema;
@@ -113,21 +113,4 @@ pub(crate) struct Spring {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) rest: Option<f64>,
-}
-
-/// A force on single particles.
-#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub(crate) enum Load {
-    Point(PointLoad),
-}
-
-/// A constant force on one particle.
-#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PointLoad {
-    /// The id of the particle it acts on.
-    pub(crate) particle: Id,
-    /// The force [N].
-    pub(crate) force: Vector,
 }

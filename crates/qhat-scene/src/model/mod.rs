@@ -5,10 +5,11 @@ pub(crate) mod body;
 mod constraint;
 mod expect;
 pub(crate) mod generate;
+pub(crate) mod load;
 mod step;
 mod value;
 
-pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
+pub(crate) use constraint::{Constraint, Distance, Nail, Spring};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use generate::Generate;
 pub(crate) use step::{Feedback, Forces, Step};
@@ -52,9 +53,9 @@ pub(crate) struct Document {
     /// The springs, which give.
     #[serde(default)]
     pub(crate) springs: Vec<Spring>,
-    /// Forces on single particles.
+    /// Forces on particles that they name.
     #[serde(default)]
-    pub(crate) loads: Vec<Load>,
+    pub(crate) loads: Vec<load::Load>,
     /// Particles by the dozen, with what connects them.
     #[serde(default)]
     pub(crate) generate: Vec<Generate>,

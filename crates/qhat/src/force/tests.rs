@@ -101,7 +101,11 @@ fn tangent<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) -> Vec<Vec<f64>> 
     for force in &case.forces {
         let named = force.particles();
         force.tangent(Motion::<D> { q, qd, t: T }, RATE, &mut |i, j, stiffness| {
-            assert!(i == j || (named.contains(&i) && named.contains(&j)), "{}: couples what it does not name", case.name);
+            assert!(
+                i == j || (named.contains(&i) && named.contains(&j)),
+                "{}: couples what it does not name",
+                case.name
+            );
             let put = |to: &mut Vec<Vec<f64>>, (i, j): (ParticleId, ParticleId), sign: f64, block: [[f64; D]; D]| {
                 for row in 0..D {
                     for column in 0..D {
@@ -192,7 +196,10 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
         for i in 0..q.len() {
             let difference = by_position[j][i] + RATE * by_velocity[j][i];
             let entry = dense[i][j];
-            assert!((entry - difference).abs() < 10.0 * CLOSE, "{name}, D = {D}: K[{i}][{j}] = {entry}, not {difference}");
+            assert!(
+                (entry - difference).abs() < 10.0 * CLOSE,
+                "{name}, D = {D}: K[{i}][{j}] = {entry}, not {difference}"
+            );
         }
     }
 
