@@ -3,6 +3,7 @@
 use super::{Id, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// A force on particles that it names.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -100,7 +101,7 @@ pub(crate) struct TorsionSpring {
     pub(crate) damping: f64,
     /// The angle from the first arm to the second at which it does not turn them [rad], at most π, which is straight: counter-clockwise in the plane, 0 or more in space; the angle at the start if left out.
     #[serde(default)]
-    #[schemars(range(min = -3.141592653589793, max = 3.141592653589793))]
+    #[schemars(range(min = -PI, max = PI))]
     pub(crate) angle: Option<f64>,
 }
 
