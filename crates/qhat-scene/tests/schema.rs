@@ -84,7 +84,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 24] = [
+const BETWEEN_KEYS: [&str; 29] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -109,6 +109,11 @@ const BETWEEN_KEYS: [&str; 24] = [
     "depends on no particle",
     "is the id of a particle, too",
     "its scale must be given",
+    "is named twice",
+    " charges for ",
+    "in two dimensions needs an `outline`",
+    "an arm of this hinge",
+    "the gradient of the wind",
 ];
 
 #[test]

@@ -66,7 +66,10 @@ pub use constraint::{
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
-pub use force::{Drag, ExpressionForce, ExpressionPotential, Force, Gravity, MouseSpring, PointForce, Spring};
+pub use force::{
+    Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, Gravity,
+    HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
+};
 pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;

@@ -9,7 +9,6 @@ pub(crate) enum Stiffness<const D: usize> {
     /// semidefinite, of either sign.
     Difference(Block<D>),
     /// Row i, column j, with the transpose implied: one block of a positive semidefinite matrix that is handed over whole.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the first force on three particles will construct it"))]
     Definite(Block<D>),
     /// The same of a matrix whose sign is not known.
     Indefinite(Block<D>),

@@ -1,5 +1,6 @@
 //! `[[bodies]]`: their particles after those of `[[generate]]`, their rods after its links.
 
+use super::loads::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::body::{Body, Common};
 use qhat::{Distance, Particle, ParticleId};
@@ -47,6 +48,7 @@ impl Assembly<'_, '_, '_> {
             let name = format!("{prefix}{i}");
             let (position, velocity) = (x[..self.dimension].to_vec(), v[..self.dimension].to_vec());
             self.positions.extend(&position);
+            self.inertias.push(Inertia { mass, fixed: false });
             let added = self.builder.particle(Particle { name: name.clone(), position, velocity, mass, fixed: false });
             if let Err(origin) = self.ids.take(&name, added, place.clone()) {
                 let message = format!("this body makes a particle {}, but that id is taken", self.report.quoted(&name));

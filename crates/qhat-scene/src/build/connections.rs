@@ -1,9 +1,9 @@
-//! `[[constraints]]`, `[[springs]]` and `[[loads]]`: what refers to particles.
+//! `[[constraints]]` and `[[springs]]`: what connects particles.
 
 use super::Assembly;
-use crate::model::{Constraint, Distance, ExpressionConstraint, Id, Load, Nail, Name, PointLoad, Spring};
+use crate::model::{Constraint, Distance, ExpressionConstraint, Id, Nail, Name, Spring};
 use crate::tree::Node;
-use qhat::{ParticleId, PointForce};
+use qhat::ParticleId;
 
 impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
@@ -97,36 +97,25 @@ impl Assembly<'_, '_, '_> {
         for (index, spring) in springs.iter().enumerate() {
             let place = self.tree.key("springs").item(index);
             let Some((a, b)) = self.pair(&spring.between, place) else { continue };
-            let rest = spring.rest.unwrap_or_else(|| self.distance(a.0, b.0));
-            if !rest.is_finite() {
-                let message = "its ends start too far apart to measure its rest length";
-                self.report.error(place.key("between").span.clone(), message, Some("give `rest` [m]".into()));
-                continue;
-            }
+            let Some(rest) = self.rest(spring.rest, (a, b), place) else { continue };
             let Spring { stiffness, damping, .. } = *spring;
             self.builder.force(qhat::Spring { a, b, stiffness, damping, rest });
         }
     }
 
-    pub(super) fn add_loads(&mut self, loads: &[Load]) {
-        for (index, load) in loads.iter().enumerate() {
-            let place = self.tree.key("loads").item(index);
-            match load {
-                Load::Point(point) => self.add_point_load(point, place),
-                Load::Force(force) => self.add_expression_force(force, place),
-                Load::Potential(potential) => self.add_expression_potential(potential, place),
-            };
+    /// The rest length of a spring [m]: as given, else the distance at the start.
+    pub(super) fn rest(&mut self, given: Option<f64>, ends: (ParticleId, ParticleId), place: &Node) -> Option<f64> {
+        let rest = given.unwrap_or_else(|| self.distance(ends.0.0, ends.1.0));
+        if !rest.is_finite() {
+            let message = "its ends start too far apart to measure its rest length";
+            self.report.error(place.key("between").span.clone(), message, Some("give `rest` [m]".into()));
+            return None;
         }
-    }
-
-    fn add_point_load(&mut self, PointLoad { particle, force }: &PointLoad, place: &Node) -> Option<()> {
-        let particle = self.particle(particle, place.key("particle"))?;
-        self.builder.force(PointForce { particle, force: force.padded() });
-        Some(())
+        Some(rest)
     }
 
     /// Two different particles.
-    fn pair(&mut self, between: &[Id; 2], place: &Node) -> Option<(ParticleId, ParticleId)> {
+    pub(super) fn pair(&mut self, between: &[Id; 2], place: &Node) -> Option<(ParticleId, ParticleId)> {
         let place = place.key("between");
         let [one, other] = between;
         let (a, b) = (self.particle(one, place.item(0)), self.particle(other, place.item(1)));

@@ -1,5 +1,6 @@
 //! `[[generate]]`: particles and what connects them, after those that the file spells out.
 
+use super::loads::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::Generate;
 use crate::model::generate::{Common, Link, Plan, RodLink, SpringLink};
@@ -54,6 +55,7 @@ impl Assembly<'_, '_, '_> {
                 return None;
             }
             self.positions.extend(&at);
+            self.inertias.push(Inertia { mass, fixed });
             let velocity = velocity.map_or_else(|| vec![0.0; self.dimension], |velocity| velocity.0.clone());
             let added = self.builder.particle(Particle { name: name.clone(), position: at, velocity, mass, fixed });
             if let Err(origin) = self.ids.take(&name, added, place.clone()) {

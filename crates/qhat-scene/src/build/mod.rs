@@ -7,6 +7,7 @@ mod expectations;
 mod expressions;
 mod generated;
 mod ids;
+mod loads;
 mod particles;
 
 use crate::model::Document;
@@ -15,6 +16,7 @@ use crate::scene::Scene;
 use crate::tree::Node;
 use expressions::Untried;
 use ids::Ids;
+use loads::Inertia;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
 use std::collections::HashSet;
 
@@ -29,6 +31,8 @@ struct Assembly<'a, 'r, 't> {
     dimension: usize,
     /// x [m], flat, for lengths that are left out.
     positions: Vec<f64>,
+    /// Of each particle, for loads that depend on it.
+    inertias: Vec<Inertia>,
     ids: Ids,
     constraint_names: HashSet<String>,
     /// Forces as expressions, to be tried where the scene starts.
@@ -44,6 +48,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         builder: System::builder(dimension),
         dimension: number,
         positions: Vec::new(),
+        inertias: Vec::new(),
         ids: Ids::default(),
         constraint_names: HashSet::new(),
         untried: Vec::new(),

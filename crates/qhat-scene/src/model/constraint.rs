@@ -1,6 +1,6 @@
-//! `[[constraints]]`, `[[springs]]` and `[[loads]]`.
+//! `[[constraints]]` and `[[springs]]`.
 
-use super::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Id, Name, Vector};
+use super::{ExpressionConstraint, Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -113,23 +113,4 @@ pub(crate) struct Spring {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) rest: Option<f64>,
-}
-
-/// A force.
-#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub(crate) enum Load {
-    Point(PointLoad),
-    Force(ExpressionForce),
-    Potential(ExpressionPotential),
-}
-
-/// A constant force on one particle.
-#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PointLoad {
-    /// The id of the particle it acts on.
-    pub(crate) particle: Id,
-    /// The force [N].
-    pub(crate) force: Vector,
 }

@@ -6,10 +6,11 @@ mod constraint;
 mod expect;
 mod expression;
 pub(crate) mod generate;
+pub(crate) mod load;
 mod step;
 mod value;
 
-pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
+pub(crate) use constraint::{Constraint, Distance, Nail, Spring};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
 pub(crate) use generate::Generate;
@@ -56,7 +57,7 @@ pub(crate) struct Document {
     pub(crate) springs: Vec<Spring>,
     /// Forces beside gravity, drag and springs.
     #[serde(default)]
-    pub(crate) loads: Vec<Load>,
+    pub(crate) loads: Vec<load::Load>,
     /// Particles by the dozen, with what connects them.
     #[serde(default)]
     pub(crate) generate: Vec<Generate>,

@@ -2,19 +2,38 @@
 //!
 //! To add a force: write one file here with `add`, `potential`, `power`, `stiffness` and `tangent`, and name it in the list below.
 
+mod actuator;
+mod air_drag;
+mod central;
+mod cubic_spring;
 mod drag;
 mod expression;
 mod gravity;
+mod harmonic;
+mod inverse_square;
+mod line;
 mod mouse;
 mod point_force;
+mod pressure;
 mod spring;
+#[cfg(test)]
+mod tests;
+mod torsion;
 
+pub use actuator::Actuator;
+pub use air_drag::AirDrag;
+pub use central::CentralForce;
+pub use cubic_spring::CubicSpring;
 pub use drag::Drag;
 pub use expression::{ExpressionForce, ExpressionPotential};
 pub use gravity::Gravity;
+pub use harmonic::HarmonicForce;
+pub use inverse_square::InverseSquare;
 pub use mouse::MouseSpring;
 pub use point_force::PointForce;
+pub use pressure::{Facet, Pressure};
 pub use spring::Spring;
+pub use torsion::TorsionSpring;
 
 use crate::point::Motion;
 use crate::stiffness::Stiffness;
@@ -132,6 +151,22 @@ forces! {
     ExpressionForce,
     /// A potential energy as an expression.
     ExpressionPotential,
+    /// Inverse-square force between one particle and a point.
+    CentralForce,
+    /// Inverse-square force between two particles: gravity or electrostatics.
+    InverseSquare,
+    /// Linear and quadratic drag of one particle in air that may move.
+    AirDrag,
+    /// Force on one particle that swings with time.
+    HarmonicForce,
+    /// Push along the line between two particles, constant and swinging with time.
+    Actuator,
+    /// Spring between two particles with a cubic term.
+    CubicSpring,
+    /// Damped torsion spring at a hinge between two arms.
+    TorsionSpring,
+    /// Pressure on one edge of a closed loop or one triangle of a closed mesh.
+    Pressure,
 }
 
 /// `Ok` if the number is finite; otherwise a sentence that names it.

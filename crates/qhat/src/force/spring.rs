@@ -11,9 +11,10 @@
 //! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.
 
+use super::line::Line;
 use super::{Acts, Dependence, not_negative};
-use crate::linalg::block::{diagonal, outer, plus};
-use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
+use crate::linalg::block::{diagonal, outer};
+use crate::point::{Motion, add, minus, norm, scaled};
 use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
 
@@ -32,29 +33,9 @@ pub struct Spring {
     pub rest: f64,
 }
 
-/// |L|, L̇·n and n of one spring.
-struct Stretch<const D: usize> {
-    length: f64,
-    rate: f64,
-    n: Point<D>,
-}
-
-impl Spring {
-    fn stretch<const D: usize>(&self, motion: Motion<'_, D>) -> Option<Stretch<D>> {
-        let L = minus(motion.x(self.a), motion.x(self.b));
-        let Ld = minus(motion.v(self.a), motion.v(self.b));
-        let length = norm(L);
-        if length == 0.0 {
-            return None;
-        }
-        let n = scaled(1.0 / length, L);
-        Some(Stretch { length, rate: dot(Ld, n), n })
-    }
-}
-
 impl Acts for Spring {
     fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
-        if let Some(Stretch { length, rate, n }) = self.stretch(motion) {
+        if let Some(Line { length, rate, n }) = Line::between(motion, self.a, self.b) {
             let pull = self.stiffness * (length - self.rest) + self.damping * rate;
             add(Q, self.a, scaled(-pull, n));
             add(Q, self.b, scaled(pull, n));
@@ -67,11 +48,11 @@ impl Acts for Spring {
     }
 
     fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
-        self.stretch(motion).map_or(0.0, |stretch| -self.damping * stretch.rate * stretch.rate)
+        Line::between(motion, self.a, self.b).map_or(0.0, |line| -self.damping * line.rate * line.rate)
     }
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
-        let Some(Stretch { length, .. }) = self.stretch(motion) else { return };
+        let Some(Line { length, .. }) = Line::between(motion, self.a, self.b) else { return };
         // Along the spring ks, across it pull/|L|; the row sum counts both ends.
         let across = self.stiffness * (length - self.rest).abs() / length;
         let both_ends = 2.0 * self.stiffness.max(across);
@@ -89,7 +70,7 @@ impl Acts for Spring {
         rate: f64,
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
-        let Some(Stretch { length, rate: stretching, n }) = self.stretch(motion) else {
+        let Some(line) = Line::between(motion, self.a, self.b) else {
             // A spring of no length is linear: the one case in which there is a stiffness without a direction.
             if self.rest == 0.0 {
                 visit(self.a, self.b, Stiffness::Difference(diagonal(self.stiffness)));
@@ -97,9 +78,9 @@ impl Acts for Spring {
             return;
         };
         // The damper also depends on q through n; that part is no symmetric matrix, and Newton's method does without it.
-        let across = (self.stiffness * (length - self.rest) + self.damping * stretching) / length;
-        let definite = outer(self.stiffness + rate * self.damping, n, n);
-        let geometric = plus(diagonal(across), -across, outer(1.0, n, n));
+        let across = (self.stiffness * (line.length - self.rest) + self.damping * line.rate) / line.length;
+        let definite = outer(self.stiffness + rate * self.damping, line.n, line.n);
+        let geometric = line.across(across);
         visit(self.a, self.b, Stiffness::Difference(definite));
         visit(self.a, self.b, Stiffness::Difference(geometric));
     }

@@ -1,0 +1,35 @@
+//! The line between two particles, along which springs pull and actuators push.
+//!
+//! ```text
+//! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
+//! ```
+
+use crate::linalg::block::{Block, diagonal, outer, plus};
+use crate::point::{Motion, Point, dot, minus, norm, scaled};
+use crate::system::ParticleId;
+
+/// |L| [m], L̇·n [m/s] and n.
+pub(super) struct Line<const D: usize> {
+    pub(super) length: f64,
+    pub(super) rate: f64,
+    pub(super) n: Point<D>,
+}
+
+impl<const D: usize> Line<D> {
+    /// `None` where |L| = 0 and no direction is defined.
+    pub(super) fn between(motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Option<Self> {
+        let L = minus(motion.x(a), motion.x(b));
+        let Ld = minus(motion.v(a), motion.v(b));
+        let length = norm(L);
+        if length == 0.0 {
+            return None;
+        }
+        let n = scaled(1.0 / length, L);
+        Some(Line { length, rate: dot(Ld, n), n })
+    }
+
+    /// s (I − nnᵀ).
+    pub(super) fn across(&self, s: f64) -> Block<D> {
+        plus(diagonal(s), -s, outer(1.0, self.n, self.n))
+    }
+}

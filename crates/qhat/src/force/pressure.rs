@@ -1,0 +1,152 @@
+//! Pressure inside a closed loop of edges in the plane, or a closed mesh of triangles in space; one force a facet.
+//!
+//! ```text
+//! edge ab:       A = ½ (x_a y_b − y_a x_b)           V = −p A        F_a = ½ p (y_b, −x_b),   F_b = ½ p (−y_a, x_a)
+//! triangle abc:  U = ⅙ x_a · (x_b × x_c)             V = −p U        F_a = ⅙ p x_b × x_c, and so on in turn
+//! −∂F_a/∂x_b:    −½ p [0 1; −1 0]                    ⅙ p [x_c]×
+//! ```
+//!
+//! A and U are the signed area and volume between a facet and the origin, by Gauss's theorem: over a loop that goes round
+//! counter-clockwise, or a mesh whose triangles do as seen from outside, they add up to what is enclosed, and only then does
+//! the origin drop out. At a corner of a loop the force is ½ p times the chord of its two neighbours, turned outward. p is
+//! in N/m in the plane (a pressure times a depth) and in Pa in space. An edge in space acts in the x–y plane; a triangle in
+//! the plane encloses nothing and pushes nowhere.
+
+use super::{Acts, Dependence, finite};
+use crate::linalg::block::Block;
+use crate::point::{Motion, Point, add, minus, norm};
+use crate::stiffness::Stiffness;
+use crate::system::ParticleId;
+
+/// A part of what encloses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Facet {
+    /// a, b of a loop that goes round counter-clockwise.
+    Edge([ParticleId; 2]),
+    /// a, b, c, counter-clockwise as seen from outside.
+    Triangle([ParticleId; 3]),
+}
+
+/// Pressure on one edge of a closed loop or one triangle of a closed mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pressure {
+    /// Where it acts.
+    pub facet: Facet,
+    /// p [N/m on an edge, Pa on a triangle], positive where it pushes outward.
+    pub pressure: f64,
+}
+
+impl Pressure {
+    /// The pressure in a loop of particles that goes round counter-clockwise: one force an edge.
+    pub fn in_loop(outline: &[ParticleId], pressure: f64) -> impl Iterator<Item = Pressure> + '_ {
+        let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+        ends.map(move |(&a, &b)| Pressure { facet: Facet::Edge([a, b]), pressure })
+    }
+
+    fn corners(&self) -> &[ParticleId] {
+        match &self.facet {
+            Facet::Edge(corners) => corners,
+            Facet::Triangle(corners) => corners,
+        }
+    }
+}
+
+/// x of one particle, z = 0 in two dimensions.
+fn place<const D: usize>(motion: Motion<'_, D>, particle: ParticleId) -> Point<3> {
+    let x = motion.x(particle);
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
+}
+
+fn cross(a: Point<3>, b: Point<3>) -> Point<3> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The rows and columns of the dimensions there are.
+fn within<const D: usize>(full: Block<3>) -> Block<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| full[i][j]))
+}
+
+impl Acts for Pressure {
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        let mut push = |particle: ParticleId, share: f64, force: Point<3>| {
+            add::<D>(Q, particle, std::array::from_fn(|k| share * self.pressure * force[k]));
+        };
+        match self.facet {
+            Facet::Edge([a, b]) => {
+                let (x_a, x_b) = (place(motion, a), place(motion, b));
+                push(a, 0.5, [x_b[1], -x_b[0], 0.0]);
+                push(b, 0.5, [-x_a[1], x_a[0], 0.0]);
+            }
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    push(a, 1.0 / 6.0, cross(place(motion, b), place(motion, c)));
+                }
+            }
+        }
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        let enclosed = match self.facet {
+            Facet::Edge([a, b]) => 0.5 * cross(place(motion, a), place(motion, b))[2],
+            Facet::Triangle([a, b, c]) => {
+                let [u, v, w] = cross(place(motion, b), place(motion, c));
+                let [x, y, z] = place(motion, a);
+                (x * u + y * v + z * w) / 6.0
+            }
+        };
+        -self.pressure * enclosed
+    }
+
+    fn power<const D: usize>(&self, _: Motion<'_, D>) -> f64 {
+        0.0
+    }
+
+    fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far they reach,
+        // not where the origin is. Each triangle answers for its side of the two edges at a corner.
+        match self.facet {
+            Facet::Edge(ends) => ends.into_iter().for_each(|id| bound(id, 0.5 * self.pressure.abs(), 0.0)),
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let reach = |id| norm(minus(motion.x(id), motion.x(a)));
+                    bound(a, self.pressure.abs() / 6.0 * (reach(b) + reach(c)), 0.0);
+                }
+            }
+        }
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Motion
+    }
+
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        _: f64,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+        match self.facet {
+            Facet::Edge([a, b]) => {
+                let s = 0.5 * self.pressure;
+                visit(a, b, Stiffness::Indefinite(within([[0.0, -s, 0.0], [s, 0.0, 0.0], [0.0; 3]])));
+            }
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let [x, y, z] = place(motion, c).map(|component| self.pressure / 6.0 * component);
+                    visit(a, b, Stiffness::Indefinite(within([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])));
+                }
+            }
+        }
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.corners().to_vec()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        finite("a pressure", self.pressure)?;
+        let corners = self.corners();
+        let repeats = corners.iter().enumerate().any(|(i, id)| corners[..i].contains(id));
+        if repeats { Err("a facet under pressure needs different particles at its corners".into()) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,245 @@
+//! Damped torsion spring at a hinge b between the arms to a and c.
+//!
+//! ```text
+//! u = x_a − x_b,   w = x_c − x_b,   θ from u to w          [m, rad]
+//! V = ½ k Δ²,   Δ = θ − θ₀                                  [J]
+//! F = −(k Δ + kd θ̇) ∇θ,   θ̇ = ∇θ · v                        [N]
+//! power of the damper = −kd θ̇²                              [W]
+//! −∂F/∂q − rate ∂F/∂q̇ = (k + rate kd) ∇θ∇θᵀ + k Δ ∇²θ + …   [N/m]
+//! ```
+//!
+//! In the plane θ is signed, positive counter-clockwise, and Δ is taken within (−π, π] by turning u by θ₀ first: the arms may
+//! pass through straight, and V has its kink where the hinge is bent π away from rest. With ⊥(x, y) = (−y, x):
+//!
+//! ```text
+//! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|², ∂²θ/∂u² its opposite with u, mixed zero
+//! ```
+//!
+//! In space θ is unsigned, in [0, π]. With n_u, n_w the units across each arm towards the other, m the normal of both arms:
+//!
+//! ```text
+//! ∂θ/∂u = −n_u/|u|,   ∂²θ/∂u² = [û n_uᵀ + n_u ûᵀ + cot θ mmᵀ]/|u|²,   ∂²θ/∂u∂w = −mmᵀ/(sin θ |u||w|); w alike
+//! ```
+//!
+//! Straight (θ = π) or folded (0) arms in space have no n. At rest there (θ₀ = π, 0) the limit is an isotropic spring, of
+//! which any n is right; otherwise the force, which is finite beside it, is taken as zero. An arm of no length has no angle:
+//! the force is zero, V that of θ = 0, and beside it the force grows as 1/|u|.
+
+use super::{Acts, Dependence, finite, not_negative};
+use crate::linalg::block::{Block, diagonal, outer, plus, zero};
+use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
+use crate::stiffness::Stiffness;
+use crate::system::ParticleId;
+use std::f64::consts::PI;
+
+/// Damped torsion spring at a hinge between two arms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorsionSpring {
+    /// The end of the first arm.
+    pub a: ParticleId,
+    /// The hinge.
+    pub b: ParticleId,
+    /// The end of the second arm.
+    pub c: ParticleId,
+    /// k [N·m/rad], not negative.
+    pub stiffness: f64,
+    /// kd [N·m·s/rad], not negative.
+    pub damping: f64,
+    /// θ₀ [rad]: −π to π in the plane, from the first arm counter-clockwise to the second; 0 to π in space. π is straight.
+    pub angle: f64,
+}
+
+/// One arm: its direction, length, the unit across it in which θ changes most, and the sign of that.
+struct Arm<const D: usize> {
+    along: Point<D>,
+    length: f64,
+    across: Point<D>,
+    sign: f64,
+}
+
+impl<const D: usize> Arm<D> {
+    /// ∂θ/∂(its end).
+    fn gradient(&self) -> Point<D> {
+        scaled(self.sign / self.length, self.across)
+    }
+
+    /// The part of ∂²θ/∂(its end)² within the plane of both arms.
+    fn curvature(&self) -> Block<D> {
+        let s = -self.sign / (self.length * self.length);
+        plus(outer(s, self.along, self.across), s, outer(1.0, self.across, self.along))
+    }
+}
+
+/// The hinge as it is: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane.
+struct Bend<const D: usize> {
+    delta: f64,
+    u: Arm<D>,
+    w: Arm<D>,
+    by_sine: f64,
+    by_tangent: f64,
+}
+
+impl TorsionSpring {
+    fn bend<const D: usize>(&self, motion: Motion<'_, D>) -> Option<Bend<D>> {
+        let hinge = motion.x(self.b);
+        let (u, w) = (minus(motion.x(self.a), hinge), minus(motion.x(self.c), hinge));
+        let lengths = (norm(u), norm(w));
+        if lengths.0 == 0.0 || lengths.1 == 0.0 {
+            return None;
+        }
+        let (u, w) = ((scaled(1.0 / lengths.0, u), lengths.0), (scaled(1.0 / lengths.1, w), lengths.1));
+        if D == 2 { Some(self.bend_in_plane(u, w)) } else { self.bend_in_space(u, w) }
+    }
+
+    fn bend_in_plane<const D: usize>(&self, u: (Point<D>, f64), w: (Point<D>, f64)) -> Bend<D> {
+        let turned = |a: Point<D>| std::array::from_fn(|k| if k == 0 { -a[1] } else { a[0] });
+        let (sine, cosine) = libm::sincos(self.angle);
+        let from = plus_scaled(scaled(cosine, u.0), sine, turned(u.0));
+        let delta = libm::atan2(from[0] * w.0[1] - from[1] * w.0[0], dot(from, w.0));
+        let arm = |(along, length), sign| Arm { along, length, across: turned(along), sign };
+        Bend { delta, u: arm(u, -1.0), w: arm(w, 1.0), by_sine: 0.0, by_tangent: 0.0 }
+    }
+
+    fn bend_in_space<const D: usize>(&self, u: (Point<D>, f64), w: (Point<D>, f64)) -> Option<Bend<D>> {
+        let cosine = dot(u.0, w.0);
+        let (towards_w, towards_u) = (plus_scaled(w.0, -cosine, u.0), plus_scaled(u.0, -cosine, w.0));
+        let sine = norm(towards_w);
+        let delta = libm::atan2(sine, cosine) - self.angle;
+        let arm = |(along, length), across| Arm { along, length, across, sign: -1.0 };
+        let other = norm(towards_u);
+        if sine > 0.0 && other > 0.0 {
+            let (n_u, n_w) = (scaled(1.0 / sine, towards_w), scaled(1.0 / other, towards_u));
+            let by_sine = delta / sine;
+            return Some(Bend { delta, u: arm(u, n_u), w: arm(w, n_w), by_sine, by_tangent: by_sine * cosine });
+        }
+        if delta != 0.0 {
+            return None;
+        }
+        // Any direction across: that of the axis that the arm is least along.
+        let least = (1..D).fold(0, |least, k| if u.0[k].abs() < u.0[least].abs() { k } else { least });
+        let axis: Point<D> = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
+        let n = plus_scaled(axis, -dot(axis, u.0), u.0);
+        let n = scaled(1.0 / norm(n), n);
+        // (θ − θ₀)/sin θ tends to cos θ, which is 1 or −1.
+        let side = if cosine > 0.0 { 1.0 } else { -1.0 };
+        Some(Bend { delta, u: arm(u, n), w: arm(w, scaled(-side, n)), by_sine: side, by_tangent: 1.0 })
+    }
+
+    /// ∂θ/∂x_a, ∂θ/∂x_b, ∂θ/∂x_c, with the particles.
+    fn gradient<const D: usize>(&self, bend: &Bend<D>) -> [(ParticleId, Point<D>); 3] {
+        let (a, c) = (bend.u.gradient(), bend.w.gradient());
+        [(self.a, a), (self.b, scaled(-1.0, plus_scaled(a, 1.0, c))), (self.c, c)]
+    }
+
+    fn rate<const D: usize>(motion: Motion<'_, D>, gradient: &[(ParticleId, Point<D>); 3]) -> f64 {
+        gradient.iter().map(|&(id, g)| dot(g, motion.v(id))).sum()
+    }
+}
+
+/// a + s b.
+fn plus_scaled<const D: usize>(a: Point<D>, s: f64, b: Point<D>) -> Point<D> {
+    std::array::from_fn(|k| a[k] + s * b[k])
+}
+
+impl Acts for TorsionSpring {
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        let Some(bend) = self.bend(motion) else { return };
+        let gradient = self.gradient(&bend);
+        let torque = -(self.stiffness * bend.delta + self.damping * Self::rate(motion, &gradient));
+        for (id, g) in gradient {
+            add(Q, id, scaled(torque, g));
+        }
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        let hinge = motion.x(self.b);
+        let (u, w) = (minus(motion.x(self.a), hinge), minus(motion.x(self.c), hinge));
+        let delta = match self.bend(motion) {
+            Some(bend) => bend.delta,
+            None if norm(u) > 0.0 && norm(w) > 0.0 && dot(u, w) < 0.0 => PI - self.angle,
+            None => self.angle,
+        };
+        0.5 * self.stiffness * delta * delta
+    }
+
+    fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let Some(bend) = self.bend(motion) else { return 0.0 };
+        let rate = Self::rate(motion, &self.gradient(&bend));
+        -self.damping * rate * rate
+    }
+
+    fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+        let Some(bend) = self.bend(motion) else { return };
+        let (u, w) = (1.0 / bend.u.length, 1.0 / bend.w.length);
+        let torque = self.stiffness * bend.delta.abs();
+        let aside = self.stiffness * (bend.by_sine.abs() + bend.by_tangent.abs());
+        // |∇θ| is u, w and at most u + w; a row sums its product with all three, 2 (u + w).
+        let all = 2.0 * (u + w);
+        for (id, most) in [(self.a, u), (self.b, u + w), (self.c, w)] {
+            bound(id, most * all * (self.stiffness + torque + aside), most * all * self.damping);
+        }
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Motion
+    }
+
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        rate: f64,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+        let Some(bend) = self.bend(motion) else { return };
+        let gradient = self.gradient(&bend);
+        let along = self.stiffness + rate * self.damping;
+        for (i, &(first, g)) in gradient.iter().enumerate() {
+            for &(second, other) in &gradient[i..] {
+                visit(first, second, Stiffness::Definite(outer(along, g, other)));
+            }
+        }
+        // The damper also depends on q through ∇θ; that part is no symmetric matrix, and Newton's method does without it.
+        let torque = self.stiffness * bend.delta + self.damping * Self::rate(motion, &gradient);
+        let (mut uu, mut ww, mut uw) = (zero(), zero(), zero());
+        uu = plus(uu, torque, bend.u.curvature());
+        ww = plus(ww, torque, bend.w.curvature());
+        if D == 3 {
+            let (u, w) = (&bend.u, &bend.w);
+            // m mᵀ = I − û ûᵀ − n_u n_uᵀ.
+            let mm = plus(diagonal(1.0), -1.0, outer(1.0, u.along, u.along));
+            let mm = plus(mm, -1.0, outer(1.0, u.across, u.across));
+            uu = plus(uu, self.stiffness * bend.by_tangent / (u.length * u.length), mm);
+            ww = plus(ww, self.stiffness * bend.by_tangent / (w.length * w.length), mm);
+            uw = plus(uw, -self.stiffness * bend.by_sine / (u.length * w.length), mm);
+        }
+        let minus_sum = |one: Block<D>, other: Block<D>| plus(plus(zero(), -1.0, one), -1.0, other);
+        let (ub, bw) = (minus_sum(uu, uw), minus_sum(uw, ww));
+        let hinge = minus_sum(ub, bw);
+        let blocks = [
+            (self.a, self.a, uu),
+            (self.a, self.b, ub),
+            (self.a, self.c, uw),
+            (self.b, self.b, hinge),
+            (self.b, self.c, bw),
+            (self.c, self.c, ww),
+        ];
+        for (first, second, block) in blocks {
+            visit(first, second, Stiffness::Indefinite(block));
+        }
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.a, self.b, self.c]
+    }
+
+    fn check(&self) -> Result<(), String> {
+        not_negative("the stiffness of a torsion spring", self.stiffness)?;
+        not_negative("the damping of a torsion spring", self.damping)?;
+        finite("the rest angle of a torsion spring", self.angle)?;
+        if self.angle.abs() > PI {
+            return Err(format!("the rest angle of a torsion spring must be within π of zero, but is {}", self.angle));
+        }
+        let differ = self.a != self.b && self.b != self.c && self.c != self.a;
+        if differ { Ok(()) } else { Err("a torsion spring needs three different particles".into()) }
+    }
+}
