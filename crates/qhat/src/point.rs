@@ -45,7 +45,6 @@ pub(crate) struct Motion<'a, const D: usize> {
     pub(crate) q: &'a [f64],
     pub(crate) qd: &'a [f64],
     /// t [s], for what depends on it explicitly.
-    #[expect(dead_code, reason = "the first kind that depends on time will read it")]
     pub(crate) t: f64,
 }
 

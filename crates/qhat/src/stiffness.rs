@@ -12,7 +12,6 @@ pub(crate) enum Stiffness<const D: usize> {
     #[cfg_attr(not(test), expect(dead_code, reason = "the first force on three particles will construct it"))]
     Definite(Block<D>),
     /// The same of a matrix whose sign is not known.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the first constraint on three particles will construct it"))]
     Indefinite(Block<D>),
 }
 

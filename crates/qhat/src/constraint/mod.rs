@@ -5,10 +5,13 @@
 
 mod distance;
 mod nail;
+mod relation;
 mod rows;
+mod smooth;
 
 pub use distance::{Distance, DistanceForm};
 pub use nail::{Nail, NailForm};
+pub use relation::Relation;
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
 
@@ -170,4 +173,6 @@ constraints! {
     Distance,
     /// One particle at a fixed point.
     Nail,
+    /// A linear relation between the places of particles.
+    Relation,
 }
