@@ -60,6 +60,7 @@ mod terms;
 mod threads;
 
 pub use body::Body;
+pub use constraint::{Angle, Area, Gears, Lengths, Volume};
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm, Relation};
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};

@@ -145,6 +145,16 @@ pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
     dot(a, a).sqrt()
 }
 
+/// A vector of the plane in space, with z = 0; one of space as it is.
+pub(crate) fn raised<N: Number, const D: usize>(a: [N; D]) -> [N; 3] {
+    std::array::from_fn(|k| if k < D { a[k] } else { N::constant(0.0) })
+}
+
+/// a × b.
+pub(crate) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -444,8 +444,13 @@ impl SystemBuilder {
             Some(id) => Err(format!("there is no particle number {}", id.0)),
             None => Ok(()),
         };
+        let fits = |wanted: Option<usize>| match wanted.filter(|d| *d != self.dimension.number()) {
+            Some(d) => Err(format!("it is written for {d} dimensions, but the system has {}", self.dimension.number())),
+            None => Ok(()),
+        };
         for (name, constraint) in &self.constraints {
-            let outcome = exists(constraint.particles()).and_then(|()| constraint.check());
+            let outcome = exists(constraint.particles()).and_then(|()| fits(constraint.dimension()));
+            let outcome = outcome.and_then(|()| constraint.check());
             outcome.map_err(|message| BuildError::Constraint { name: name.clone(), message })?;
         }
         for (index, force) in self.forces.iter().enumerate() {

@@ -3,22 +3,33 @@
 //! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
+mod angle;
+mod area;
+mod arms;
 mod distance;
+mod gears;
+mod lengths;
 mod nail;
 mod relation;
 mod rows;
 mod smooth;
+mod volume;
 
+pub use angle::Angle;
+pub use area::Area;
 pub use distance::{Distance, DistanceForm};
+pub use gears::Gears;
+pub use lengths::Lengths;
 pub use nail::{Nail, NailForm};
 pub use relation::Relation;
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
+pub use volume::Volume;
 
 use crate::force::Force;
 use crate::point::Motion;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
+use crate::system::{Dimension, ParticleId, in_dimension};
 
 /// What every constraint answers. [C] is the unit of its residual.
 pub(crate) trait Holds {
@@ -28,6 +39,11 @@ pub(crate) trait Holds {
     /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
     fn is_vector(&self) -> bool {
         false
+    }
+
+    /// The only number of dimensions it fits, if there is one.
+    fn dimension(&self) -> Option<usize> {
+        None
     }
 
     /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
@@ -121,6 +137,9 @@ macro_rules! constraints {
             fn is_vector(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.is_vector(),)* }
             }
+            fn dimension(&self) -> Option<usize> {
+                match self { $(Constraint::$kind(constraint) => constraint.dimension(),)* }
+            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Constraint::$kind(constraint) => constraint.particles(),)* }
             }
@@ -166,6 +185,20 @@ impl Constraint {
     pub(crate) fn as_rod(&self) -> Option<&Distance> {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
+
+    /// C at t = 0 with the particles at q [m], flat, d numbers each: what a constraint made for 0 would have to be made for, to hold there.
+    ///
+    /// # Panics
+    /// Where q lacks a particle that it names.
+    pub fn residual(&self, dimension: Dimension, positions: &[f64]) -> Vec<f64> {
+        let d = dimension.number();
+        let mut rows = Rows::new(Layout::new(std::iter::once(self), d), d, positions.len() / d);
+        // C depends on no velocity: any will do.
+        in_dimension!(dimension, D => {
+            rows.evaluate(std::iter::once(self), Motion::<D> { q: positions, qd: positions, t: 0.0 });
+        });
+        rows.C
+    }
 }
 
 constraints! {
@@ -175,4 +208,14 @@ constraints! {
     Nail,
     /// A linear relation between the places of particles.
     Relation,
+    /// A weighted sum of distances: a rope over pulleys, lengths in a ratio.
+    Lengths,
+    /// The angle from one arm to another, or a motor.
+    Angle,
+    /// Wheels, racks and pinions that mesh.
+    Gears,
+    /// A polygon that keeps its area.
+    Area,
+    /// A closed surface that keeps its volume.
+    Volume,
 }

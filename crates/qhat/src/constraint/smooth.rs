@@ -27,6 +27,11 @@ pub(crate) trait Smooth: Clone {
         false
     }
 
+    /// The only number of dimensions it fits, if there is one.
+    fn dimension(&self) -> Option<usize> {
+        None
+    }
+
     /// The particles it names, each once.
     fn particles(&self) -> Vec<ParticleId>;
 
@@ -80,6 +85,10 @@ impl<S: Smooth> Holds for S {
 
     fn is_vector(&self) -> bool {
         Smooth::is_vector(self)
+    }
+
+    fn dimension(&self) -> Option<usize> {
+        Smooth::dimension(self)
     }
 
     fn particles(&self) -> Vec<ParticleId> {
