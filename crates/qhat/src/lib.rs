@@ -40,6 +40,7 @@ pub mod force;
 pub mod linalg;
 
 mod body;
+mod cluster;
 mod ensemble;
 mod error;
 mod integrate;
@@ -60,6 +61,7 @@ mod terms;
 mod threads;
 
 pub use body::Body;
+pub use cluster::rigid_rods;
 pub use constraint::{Angle, Area, Gears, Lengths, Volume};
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm, Relation};
 pub use ensemble::step_all;

@@ -3,9 +3,11 @@
 
 mod bodies;
 mod connections;
+mod drives;
 mod expectations;
 mod generated;
 mod ids;
+mod linkages;
 mod particles;
 
 use crate::model::Document;
@@ -14,7 +16,8 @@ use crate::scene::Scene;
 use crate::tree::Node;
 use ids::Ids;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 /// More would fill the memory of a browser before anyone has seen a frame.
 const MOST_PARTICLES: u64 = 1_000_000;
@@ -29,6 +32,8 @@ struct Assembly<'a, 'r, 't> {
     positions: Vec<f64>,
     ids: Ids,
     constraint_names: HashSet<String>,
+    /// Where in the text a constraint is that the engine may still refuse.
+    places: HashMap<String, Range<usize>>,
 }
 
 /// The scene, or `None` after telling what is wrong with it.
@@ -42,13 +47,14 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         positions: Vec::new(),
         ids: Ids::default(),
         constraint_names: HashSet::new(),
+        places: HashMap::new(),
     };
     assembly.add_all(&document)?;
-    let Assembly { builder, report, ids, .. } = assembly;
+    let Assembly { builder, report, ids, places, .. } = assembly;
     let (system, state) = match builder.build() {
         Ok(built) => built,
         Err(error) => {
-            report.error(place_of(&error, tree, &ids), error.to_string(), None);
+            report.error(place_of(&error, tree, &ids, &places), error.to_string(), None);
             return None;
         }
     };
@@ -111,9 +117,10 @@ impl Assembly<'_, '_, '_> {
 }
 
 /// Where to point for what only the engine noticed.
-fn place_of(error: &BuildError, tree: &Node, ids: &Ids) -> std::ops::Range<usize> {
+fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &HashMap<String, Range<usize>>) -> Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
+        BuildError::Constraint { name, .. } if places.contains_key(name) => places[name].clone(),
         BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),

@@ -46,6 +46,13 @@ impl<'a> Checker<'a, '_, '_> {
         if let Some(choices) = meaning.choices() {
             return self.choice(node, meaning, name, &choices);
         }
+        if meaning.is_number_or_text() {
+            return match &node.value {
+                Value::Number(number) => self.number(node, *number, meaning, name),
+                Value::Text(text) => self.text(node, text, meaning, name),
+                _ => self.mismatch(node, meaning, name),
+            };
+        }
         match (meaning.text("type"), &node.value) {
             ("object", Value::Table(entries)) => self.table(node, entries, meaning, name),
             ("array", Value::List(items)) => self.list(node, items, meaning, name),

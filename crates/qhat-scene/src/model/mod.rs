@@ -3,14 +3,20 @@
 
 pub(crate) mod body;
 mod constraint;
+mod content;
+mod drive;
 mod expect;
 pub(crate) mod generate;
+mod linkage;
 mod step;
 mod value;
 
 pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
+pub(crate) use content::{Area, Volume};
+pub(crate) use drive::Drive;
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use generate::Generate;
+pub(crate) use linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
 

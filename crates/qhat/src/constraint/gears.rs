@@ -30,7 +30,7 @@ use crate::number::{Number, dot};
 use crate::schedule::Schedule;
 use crate::system::ParticleId;
 
-/// More teeth than this leave less than a part in a thousand of a turn between two of them.
+/// More leave less than a part in a thousand of a turn between two teeth. The sum of two wheels' counts, too.
 const MOST_TEETH: u32 = 1000;
 
 /// What an arm adds.
@@ -57,13 +57,15 @@ impl Gears {
         let [[c1, _], [c2, _]] = wheels;
         let common = divisor(teeth[0].unsigned_abs(), teeth[1].unsigned_abs()).max(1) as i32;
         let [z1, z2] = teeth.map(|z| z / common);
-        Gears::coupled(&[(wheels[0], z1), (wheels[1], z2), ([c1, c2], z1.saturating_add(z2).saturating_neg())], angle)
+        let centres = ([c1, c2], z1.saturating_add(z2).saturating_neg());
+        let arms = [(wheels[0], z1), (wheels[1], z2), centres];
+        // Equal wheels on a belt: the line between the centres drops out.
+        Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
     }
 
     /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: what turns in bearings of the ground.
     pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Schedule>) -> Self {
-        let arms = arms.iter().filter(|(_, z)| *z != 0);
-        let (ends, parts): (Vec<_>, Vec<_>) = arms.map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
+        let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
@@ -137,16 +139,20 @@ impl Smooth for Gears {
 
     fn check(&self) -> Result<(), String> {
         if self.parts.len() < 2 {
-            return Err("a gear couples two arms at least, each with teeth".into());
+            return Err("a gear couples two arms at least".into());
         }
         for (arm, part) in self.parts.iter().enumerate() {
             if self.arms.is_without_length(arm) {
-                return Err("an arm of a gear goes from its centre to another particle, and no two wheels that mesh share their centre".into());
+                return Err(
+                    "an arm of a gear goes from its centre to another particle, and wheels that mesh have two centres"
+                        .into(),
+                );
             }
             match *part {
-                Part::Turn(z) if z.unsigned_abs() > 2 * MOST_TEETH => {
-                    return Err(format!("without their common factor the teeth may be {MOST_TEETH} at most"));
+                Part::Turn(z) if z.unsigned_abs() > MOST_TEETH => {
+                    return Err(format!("less their common factor, the numbers of teeth may be {MOST_TEETH} at most"));
                 }
+                Part::Turn(0) => return Err("a wheel without teeth takes no part; leave it out".into()),
                 Part::Turn(_) => {}
                 Part::Way(k) => {
                     k.iter().try_for_each(|&component| finite("the direction over the radius of a rack", component))?

@@ -97,9 +97,10 @@ impl Smooth for Lengths {
                 return Err("a segment goes from one particle to another".into());
             }
         }
+        self.total.check("the length of a rope")?;
         if self.total.value(0.0) <= 0.0 && self.weights.iter().all(|&weight| weight > 0.0) {
             return Err(format!("the length of a rope must be above 0, but is {} m", self.total.value(0.0)));
         }
-        self.total.check("the length of a rope")
+        Ok(())
     }
 }
