@@ -3,7 +3,10 @@
 use super::Assembly;
 use crate::model::{Angle, Area, Gears, Id, LengthRatio, Name, Pulley, Rack, Rigid, Volume};
 use crate::tree::Node;
-use qhat::{Distance, Lengths, ParticleId, Schedule, rigid_rods};
+use qhat::{Constraint, Distance, Lengths, ParticleId, Schedule, rigid_rods};
+
+/// What is nearer to 0 or π [rad] than this is lost in the roundoff of a step.
+const IN_LINE: f64 = 1e-6;
 
 impl Assembly<'_, '_, '_> {
     pub(super) fn add_pulley(&mut self, pulley: &Pulley, place: &Node) -> Option<()> {
@@ -63,12 +66,25 @@ impl Assembly<'_, '_, '_> {
             None => None,
         };
         let direction = direction.as_ref().map_or([1.0, 0.0, 0.0], |direction| direction.padded());
+        let make = |angle: Schedule| -> Constraint {
+            match from {
+                Some(from) => qhat::Angle::between(from, arm, angle).into(),
+                None => qhat::Angle::from_direction(direction, arm, angle).into(),
+            }
+        };
+        let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions)[0];
+        if self.dimension == 3 && at_start.sin().abs() < IN_LINE {
+            let message = "the arm starts in one line with what its angle is counted from, where in space an angle has no direction to change in";
+            self.report.error(
+                place.key("arm").span.clone(),
+                message,
+                Some("start with an angle between 0 and π".into()),
+            );
+            return None;
+        }
         let [Id(a), Id(b)] = &angle.arm;
         let name = self.name_of(&angle.id, format!("angle({a}-{b})"));
-        self.add_driven(name, &angle.angle, (place, "angle"), |angle: Schedule| match from {
-            Some(from) => qhat::Angle::between(from, arm, angle).into(),
-            None => qhat::Angle::from_direction(direction, arm, angle).into(),
-        })
+        self.add_driven(name, &angle.angle, (place, "angle"), make)
     }
 
     pub(super) fn add_gears(&mut self, gears: &Gears, place: &Node) -> Option<()> {

@@ -139,7 +139,11 @@ impl<'a> Checker<'a, '_, '_> {
             None => (meaning.whole("minItems").unwrap_or(0), meaning.whole("maxItems").unwrap_or(u64::MAX)),
         };
         if !(least..=most).contains(&(items.len() as u64)) {
-            let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+            let wanted = match most {
+                u64::MAX => format!("at least {least}"),
+                most if least == most => format!("{least}"),
+                most => format!("{least} to {most}"),
+            };
             let message = format!("`{name}` must have {wanted} entries, but has {}", items.len());
             self.report.error(node.span.clone(), message, Some(self.help(meaning, name)));
             return None;
