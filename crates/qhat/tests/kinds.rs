@@ -185,7 +185,7 @@ fn build(random: &mut Random, case: &Case) -> (System, State) {
         let steep = terms.jacobian.to_dense().iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         let in_line = case.d == 3 && case.turns && {
             let drive = schedule(case.drive, 0.0).value(0.0);
-            (terms.residual[0] + drive).sin() < 0.5
+            libm::sin(terms.residual[0] + drive) < 0.5
         };
         if !(case.turns && terms.residual[0].abs() > 3.0 || in_line) {
             assert!(steep < 20.0, "{}: {steep}", case.name);
@@ -263,7 +263,8 @@ fn moving(case: &Case) -> (System, State) {
     }
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {
-            let square = |k: usize| (q[a.0 * case.d + k] - q[b.0 * case.d + k]).powi(2);
+            let apart = |k: usize| q[a.0 * case.d + k] - q[b.0 * case.d + k];
+            let square = |k: usize| apart(k) * apart(k);
             let rest = 0.95 * (0..case.d).map(square).sum::<f64>().sqrt();
             builder.force(qhat::Spring { a: *a, b: *b, stiffness: 20.0, damping: 0.0, rest });
         }

@@ -4,6 +4,7 @@ use super::Assembly;
 use crate::model::{Angle, Area, Gears, Id, LengthRatio, Name, Pulley, Rack, Rigid, Volume};
 use crate::tree::Node;
 use qhat::{Constraint, Distance, Lengths, ParticleId, Schedule, rigid_rods};
+use std::f64::consts::PI;
 
 /// What is nearer to 0 or π [rad] than this is lost in the roundoff of a step.
 const IN_LINE: f64 = 1e-6;
@@ -73,7 +74,7 @@ impl Assembly<'_, '_, '_> {
             }
         };
         let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions)[0];
-        if self.dimension == 3 && at_start.sin().abs() < IN_LINE {
+        if self.dimension == 3 && (at_start.abs() < IN_LINE || (PI - at_start.abs()).abs() < IN_LINE) {
             let message = "the arm starts in one line with what its angle is counted from, where in space an angle has no direction to change in";
             self.report.error(
                 place.key("arm").span.clone(),
