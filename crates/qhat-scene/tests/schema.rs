@@ -5,8 +5,8 @@ use qhat_scene::{Format, SceneErrors, json_schema, load, shipped};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-fn every_key() -> Value {
-    toml::from_str(include_str!("every-key.toml")).unwrap()
+fn every_key() -> [Value; 2] {
+    [include_str!("every-key.toml"), include_str!("every-key-in-space.toml")].map(|text| toml::from_str(text).unwrap())
 }
 
 fn read(scene: &Value) -> Result<(), SceneErrors> {
@@ -22,8 +22,10 @@ fn the_schema_is_of_draft_2020_12_and_accepts_the_shipped_scenes() {
         let value: Value = toml::from_str(scene.text).unwrap();
         assert!(validator.is_valid(&value), "{}", scene.name);
     }
-    assert!(validator.is_valid(&every_key()));
-    read(&every_key()).unwrap_or_else(|errors| panic!("{errors}"));
+    for scene in every_key() {
+        assert!(validator.is_valid(&scene));
+        read(&scene).unwrap_or_else(|errors| panic!("{errors}"));
+    }
 }
 
 /// The scene with one value put in the place of another, or removed, for every place and every value.
@@ -84,7 +86,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 29] = [
+const BETWEEN_KEYS: [&str; 41] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -114,13 +116,25 @@ const BETWEEN_KEYS: [&str; 29] = [
     "in two dimensions needs an `outline`",
     "an arm of this hinge",
     "the gradient of the wind",
+    "this rope has",
+    "weight 0",
+    "without teeth",
+    "wheels that mesh",
+    "needs a length",
+    "cluster cannot be held",
+    "one corner of a polygon",
+    "three different corners",
+    "not closed",
+    "turn one of them round",
+    "from one particle to another",
+    "may depend on nothing but t",
 ];
 
 #[test]
 fn the_reader_and_the_schema_agree() {
     let schema = json_schema();
     let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let variants = variants(&every_key());
+    let variants: Vec<Value> = every_key().iter().flat_map(variants).collect();
     assert!(variants.len() > 1000);
     for variant in variants {
         match (validator.is_valid(&variant), read(&variant)) {
@@ -159,7 +173,7 @@ fn the_guide_and_the_test_scene_name_every_key() {
     keys(&json_schema(), &mut known);
     let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene-file.md")).unwrap();
     let mut places = Vec::new();
-    collect_places(&every_key(), String::new(), &mut places);
+    every_key().iter().for_each(|scene| collect_places(scene, String::new(), &mut places));
     for key in known {
         assert!(guide.contains(&format!("`{key}`")), "docs/scene-file.md does not name `{key}`");
         assert!(places.iter().any(|place| place.ends_with(&format!("/{key}"))), "every-key.toml lacks `{key}`");

@@ -40,14 +40,17 @@ pub mod force;
 pub mod linalg;
 
 mod body;
+mod cluster;
 mod ensemble;
 mod error;
 mod integrate;
 mod lanes;
 mod measure;
 mod multiplier;
+mod number;
 mod point;
 mod report;
+mod schedule;
 mod settings;
 mod simulation;
 mod softness;
@@ -59,9 +62,10 @@ mod terms;
 mod threads;
 
 pub use body::Body;
+pub use cluster::rigid_rods;
 pub use constraint::{
-    Barrier, Constraint, Distance, DistanceForm, ExpressionConstraint, Formulation, Jacobian, Limits, Nail, NailForm,
-    Surface,
+    Angle, Area, Barrier, Constraint, Distance, DistanceForm, ExpressionConstraint, Formulation, Gears, Jacobian,
+    Lengths, Limits, Nail, NailForm, Relation, Surface, Volume,
 };
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
@@ -74,6 +78,7 @@ pub use integrate::{Workspace, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
 pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
+pub use schedule::Schedule;
 pub use settings::{Feedback, Integrator, Settings};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

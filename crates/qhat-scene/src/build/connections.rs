@@ -1,7 +1,7 @@
 //! `[[constraints]]` and `[[springs]]`: what connects particles.
 
 use super::Assembly;
-use crate::model::{Constraint, Distance, ExpressionConstraint, Id, Nail, Name, Spring};
+use crate::model::{Constraint, Distance, Id, Nail, Name, Spring};
 use crate::tree::Node;
 use qhat::ParticleId;
 
@@ -9,10 +9,7 @@ impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
     pub(super) fn take_constraint_names(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
-            let (Constraint::Distance(Distance { id, .. })
-            | Constraint::Nail(Nail { id, .. })
-            | Constraint::Expression(ExpressionConstraint { id, .. })) = constraint;
-            if let Some(Name(name)) = id
+            if let Some(Name(name)) = constraint.id()
                 && !self.constraint_names.insert(name.clone())
             {
                 let span = self.tree.key("constraints").item(index).key("id").span.clone();
@@ -40,6 +37,14 @@ impl Assembly<'_, '_, '_> {
                 Constraint::Distance(distance) => self.add_distance(distance, place),
                 Constraint::Nail(nail) => self.add_nail(nail, place),
                 Constraint::Expression(expression) => self.add_expression_constraint(expression, place),
+                Constraint::Pulley(pulley) => self.add_pulley(pulley, place),
+                Constraint::LengthRatio(lengths) => self.add_length_ratio(lengths, place),
+                Constraint::Angle(angle) => self.add_angle(angle, place),
+                Constraint::Gears(gears) => self.add_gears(gears, place),
+                Constraint::Rack(rack) => self.add_rack(rack, place),
+                Constraint::Rigid(rigid) => self.add_rigid(rigid, place),
+                Constraint::Area(area) => self.add_area(area, place),
+                Constraint::Volume(volume) => self.add_volume(volume, place),
             };
         }
     }

@@ -3,10 +3,12 @@
 
 mod bodies;
 mod connections;
+mod drives;
 mod expectations;
 mod expressions;
 mod generated;
 mod ids;
+mod linkages;
 mod loads;
 mod particles;
 
@@ -18,7 +20,8 @@ use expressions::Untried;
 use ids::Ids;
 use loads::Inertia;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 /// More would fill the memory of a browser before anyone has seen a frame.
 const MOST_PARTICLES: u64 = 1_000_000;
@@ -37,6 +40,8 @@ struct Assembly<'a, 'r, 't> {
     constraint_names: HashSet<String>,
     /// Forces as expressions, to be tried where the scene starts.
     untried: Vec<Untried>,
+    /// Where in the text a constraint is that the engine may still refuse.
+    places: HashMap<String, Range<usize>>,
 }
 
 /// The scene, or `None` after telling what is wrong with it.
@@ -52,13 +57,14 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         ids: Ids::default(),
         constraint_names: HashSet::new(),
         untried: Vec::new(),
+        places: HashMap::new(),
     };
     assembly.add_all(&document)?;
-    let Assembly { builder, report, ids, untried, .. } = assembly;
+    let Assembly { builder, report, ids, untried, places, .. } = assembly;
     let (system, state) = match builder.build() {
         Ok(built) => built,
         Err(error) => {
-            report.error(place_of(&error, tree, &ids), error.to_string(), None);
+            report.error(place_of(&error, tree, &ids, &places), error.to_string(), None);
             return None;
         }
     };
@@ -125,9 +131,10 @@ impl Assembly<'_, '_, '_> {
 }
 
 /// Where to point for what only the engine noticed.
-fn place_of(error: &BuildError, tree: &Node, ids: &Ids) -> std::ops::Range<usize> {
+fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &HashMap<String, Range<usize>>) -> Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
+        BuildError::Constraint { name, .. } if places.contains_key(name) => places[name].clone(),
         BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),

@@ -73,6 +73,11 @@ impl<'a> Meaning<'a> {
         self.text("x-length") == "dimension"
     }
 
+    /// Whether it is a number or the text of an expression.
+    pub(super) fn is_number_or_text(&self) -> bool {
+        self.list("type").filter_map(Json::as_str).eq(["number", "string"])
+    }
+
     pub(super) fn is_tagged(&self) -> bool {
         self.kinds().next().is_some()
     }
@@ -93,6 +98,7 @@ impl<'a> Meaning<'a> {
             "number" => "a number",
             "boolean" => "true or false",
             _ if self.is_tagged() => "a table",
+            _ if self.is_number_or_text() => "a number or an expression of t",
             _ if self.alternatives().next().is_some() => "text or a list of texts",
             _ => "text",
         }

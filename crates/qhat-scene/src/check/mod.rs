@@ -49,6 +49,13 @@ impl<'a> Checker<'a, '_, '_> {
         if let Some(alternative) = meaning.alternatives().find(|alternative| agrees(alternative.text("type"), node)) {
             return self.value(node, alternative, name);
         }
+        if meaning.is_number_or_text() {
+            return match &node.value {
+                Value::Number(number) => self.number(node, *number, meaning, name),
+                Value::Text(text) => self.text(node, text, meaning, name),
+                _ => self.mismatch(node, meaning, name),
+            };
+        }
         match (meaning.text("type"), &node.value) {
             ("object", Value::Table(entries)) if meaning.names(self.root).is_some() => self.map(entries, meaning, name),
             ("object", Value::Table(entries)) => self.table(node, entries, meaning, name),
@@ -149,7 +156,11 @@ impl<'a> Checker<'a, '_, '_> {
             None => (meaning.whole("minItems").unwrap_or(0), meaning.whole("maxItems").unwrap_or(u64::MAX)),
         };
         if !(least..=most).contains(&(items.len() as u64)) {
-            let wanted = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+            let wanted = match most {
+                u64::MAX => format!("at least {least}"),
+                most if least == most => format!("{least}"),
+                most => format!("{least} to {most}"),
+            };
             let message = format!("`{name}` must have {wanted} entries, but has {}", items.len());
             self.report.error(node.span.clone(), message, Some(self.help(meaning, name)));
             return None;

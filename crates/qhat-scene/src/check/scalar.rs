@@ -45,5 +45,9 @@ fn outside(number: f64, meaning: Meaning<'_>) -> Option<String> {
 
 /// Whole numbers stay whole, so that serde can fill integers; −0 stays what it is.
 fn json(number: f64, meaning: Meaning<'_>) -> Json {
-    if meaning.text("type") == "integer" { Json::from(number as u64) } else { Json::from(number) }
+    match meaning.text("type") {
+        "integer" if number < 0.0 => Json::from(number as i64),
+        "integer" => Json::from(number as u64),
+        _ => Json::from(number),
+    }
 }

@@ -1,5 +1,7 @@
 //! `[[constraints]]` and `[[springs]]`.
 
+use super::content::{Area, Volume};
+use super::linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
 use super::{ExpressionConstraint, Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +13,33 @@ pub(crate) enum Constraint {
     Distance(Distance),
     Nail(Nail),
     Expression(ExpressionConstraint),
+    Pulley(Pulley),
+    LengthRatio(LengthRatio),
+    Angle(Angle),
+    Gears(Gears),
+    Rack(Rack),
+    Rigid(Rigid),
+    Area(Area),
+    Volume(Volume),
+}
+
+impl Constraint {
+    /// The name that the file gives it.
+    pub(crate) fn id(&self) -> Option<&Name> {
+        match self {
+            Constraint::Distance(Distance { id, .. })
+            | Constraint::Nail(Nail { id, .. })
+            | Constraint::Expression(ExpressionConstraint { id, .. })
+            | Constraint::Pulley(Pulley { id, .. })
+            | Constraint::LengthRatio(LengthRatio { id, .. })
+            | Constraint::Angle(Angle { id, .. })
+            | Constraint::Gears(Gears { id, .. })
+            | Constraint::Rack(Rack { id, .. })
+            | Constraint::Area(Area { id, .. })
+            | Constraint::Volume(Volume { id, .. }) => id.as_ref(),
+            Constraint::Rigid(_) => None,
+        }
+    }
 }
 
 /// A rod: two particles stay as far apart as they are.

@@ -3,17 +3,23 @@
 
 pub(crate) mod body;
 mod constraint;
+mod content;
+mod drive;
 mod expect;
 mod expression;
 pub(crate) mod generate;
+mod linkage;
 pub(crate) mod load;
 mod step;
 mod value;
 
 pub(crate) use constraint::{Constraint, Distance, Nail, Spring};
+pub(crate) use content::{Area, Volume};
+pub(crate) use drive::Drive;
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
 pub(crate) use generate::Generate;
+pub(crate) use linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
 

@@ -3,25 +3,39 @@
 //! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
+mod angle;
+mod area;
+mod arms;
 mod barrier;
 mod distance;
 mod expression;
+mod gears;
+mod lengths;
 mod limits;
 mod nail;
+mod relation;
 mod rows;
+mod smooth;
+mod volume;
 
+pub use angle::Angle;
+pub use area::Area;
 pub use barrier::{Barrier, Surface};
 pub use distance::{Distance, DistanceForm};
 pub use expression::ExpressionConstraint;
+pub use gears::Gears;
+pub use lengths::Lengths;
 pub use limits::Limits;
 pub use nail::{Nail, NailForm};
+pub use relation::Relation;
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
+pub use volume::Volume;
 
 use crate::force::Force;
 use crate::point::Motion;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
+use crate::system::{Dimension, ParticleId, in_dimension};
 use std::ops::Range;
 
 /// What every constraint answers. [C] is the unit of its residual.
@@ -222,6 +236,20 @@ impl Constraint {
     pub(crate) fn as_rod(&self) -> Option<&Distance> {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
+
+    /// C at t = 0 with the particles at q [m], flat, d numbers each: what a constraint made for 0 would have to be made for, to hold there.
+    ///
+    /// # Panics
+    /// Where q lacks a particle that it names.
+    pub fn residual(&self, dimension: Dimension, positions: &[f64]) -> Vec<f64> {
+        let d = dimension.number();
+        let mut rows = Rows::new(Layout::new(std::iter::once(self), d), d, positions.len() / d);
+        // C depends on no velocity: any will do.
+        in_dimension!(dimension, D => {
+            rows.evaluate(std::iter::once(self), Motion::<D> { q: positions, qd: positions, t: 0.0 });
+        });
+        rows.C
+    }
 }
 
 constraints! {
@@ -235,4 +263,16 @@ constraints! {
     Barrier,
     /// An expression that stays zero.
     ExpressionConstraint,
+    /// A linear relation between the places of particles.
+    Relation,
+    /// A weighted sum of distances: a rope over pulleys, lengths in a ratio.
+    Lengths,
+    /// The angle from one arm to another, or a motor.
+    Angle,
+    /// Wheels, racks and pinions that mesh.
+    Gears,
+    /// A polygon that keeps its area.
+    Area,
+    /// A closed surface that keeps its volume.
+    Volume,
 }

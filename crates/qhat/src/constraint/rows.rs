@@ -165,6 +165,24 @@ impl<const D: usize> RowWriter<'_, D> {
         self.write_driven(C, Cd, gamma, 0.0, blocks);
     }
 
+    /// One row whose blocks come one at a time: `fill` is told which particles they belong to and where to put them, and returns
+    /// C, Ċ, γ and C_t.
+    pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut dyn FnMut(Point<D>)) -> [f64; 4]) {
+        let Jacobian { layout, blocks, .. } = &mut self.rows.J;
+        let entries = layout.start[self.row]..layout.start[self.row + 1];
+        let mut places = blocks[entries.start * D..entries.end * D].chunks_exact_mut(D);
+        let [C, Cd, gamma, Ct] = fill(&layout.particle[entries.clone()], &mut |block| {
+            places.next().expect("a block for each particle").copy_from_slice(&block);
+        });
+        debug_assert!(places.next().is_none(), "a block for each particle");
+        self.rows.C[self.row] = C;
+        self.rows.Cd[self.row] = Cd;
+        self.rows.gamma[self.row] = gamma;
+        self.rows.Ct[self.row] = Ct;
+        self.entry = entries.end;
+        self.row += 1;
+    }
+
     /// One row of C(q, t) = 0, with Ċ = J q̇ + C_t and γ = (∂(J q̇)/∂q) q̇ + 2 J_t q̇ + C_tt; the blocks of J may come from an
     /// iterator.
     #[inline(always)]

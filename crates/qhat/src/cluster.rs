@@ -1,0 +1,96 @@
+//! Cluster: particles that keep all their distances, as the rods that say so and none more.
+//!
+//! n particles in general position need 2n − 3 rods in the plane and 3n − 6 in space: one bar, one triangle, in space one tetrahedron,
+//! and for every other particle d rods to particles that stand already. Its rods must not lie in one line (plane), so each particle takes, of
+//! the corners of the first simplex, those d whose directions, as unit vectors e, span the most:
+//!
+//! ```text
+//! plane |e₁ × e₂|,   space |e₁ · (e₂ × e₃)|
+//! ```
+//!
+//! The corners themselves are far apart: the particle farthest from the first, the farthest from that, then the farthest from their line, then from
+//! their plane. So the least span, and with it the condition of the rods, is that of the shape.
+//!
+//! Particles all in one line, or in space in one plane, cannot be held like this: rods in a line do not resist what moves across it. Two
+//! particles, and three in space, need no more than their rods.
+
+use crate::number::cross;
+use crate::point::{dot, minus, norm, scaled};
+use crate::system::Dimension;
+
+/// What spans less than this of what unit vectors can is taken as flat: rods would hold it by 1e6 times the force on it.
+const FLAT: f64 = 1e-6;
+
+/// The pairs of points [m] between which rods hold a cluster rigid, none of them superfluous; z is ignored in two dimensions.
+///
+/// ```
+/// use qhat::{Dimension, rigid_rods};
+/// let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// assert_eq!(rigid_rods(Dimension::Two, &square)?.len(), 2 * 4 - 3);
+/// assert!(rigid_rods(Dimension::Three, &square).is_err(), "all in one plane");
+/// # Ok::<(), String>(())
+/// ```
+///
+/// # Errors
+/// In words, where there are fewer than two, where two are at the same place, or where they lie in one line, or in space in one plane, which rods between
+/// them cannot hold.
+pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usize; 2]>, String> {
+    let d = dimension.number();
+    let flat: Vec<[f64; 3]> = points.iter().map(|x| std::array::from_fn(|k| if k < d { x[k] } else { 0.0 })).collect();
+    let corners = simplex(d, &flat)?;
+    let mut rods = Vec::new();
+    for (i, &a) in corners.iter().enumerate() {
+        rods.extend(corners[..i].iter().map(|&b| [b, a]));
+    }
+    for i in (0..flat.len()).filter(|i| !corners.contains(i)) {
+        let to: Vec<[f64; 3]> = corners.iter().map(|&corner| minus(flat[corner], flat[i])).collect();
+        if to.iter().any(|&d| norm(d) == 0.0) {
+            return Err("two of its particles are at the same place".into());
+        }
+        let unit: Vec<[f64; 3]> = to.iter().map(|&d| scaled(1.0 / norm(d), d)).collect();
+        // One corner of the simplex too many: the one to leave out.
+        let span = |left: usize| {
+            let e: Vec<[f64; 3]> = (0..=d).filter(|k| *k != left).map(|k| unit[k]).collect();
+            if d == 2 { norm(cross(e[0], e[1])) } else { dot(e[0], cross(e[1], e[2])).abs() }
+        };
+        let left = (1..=d).fold(0, |best, k| if span(k) > span(best) { k } else { best });
+        rods.extend((0..=d).filter(|k| *k != left).map(|k| [corners[k], i]));
+    }
+    Ok(rods)
+}
+
+/// d + 1 of them that span as much as they can, or all where there are no more than d.
+fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, String> {
+    if points.len() < 2 {
+        return Err("a rigid cluster has two particles or more".into());
+    }
+    let farthest = |from: &dyn Fn([f64; 3]) -> f64| {
+        let better = |best: usize, i: usize| if from(points[i]) > from(points[best]) { i } else { best };
+        (1..points.len()).fold(0, better)
+    };
+    let a = farthest(&|x| norm(minus(x, points[0])));
+    let b = farthest(&|x| norm(minus(x, points[a])));
+    let bar = minus(points[b], points[a]);
+    let length = norm(bar);
+    if !(length > 0.0 && length.is_finite()) {
+        return Err("its particles are at the same place, or too far apart to measure".into());
+    }
+    if points.len() == 2 {
+        return Ok(vec![a, b]);
+    }
+    let off_line = |x: [f64; 3]| norm(cross(bar, minus(x, points[a]))) / (length * length);
+    let c = farthest(&off_line);
+    if off_line(points[c]) < FLAT {
+        return Err("its particles lie in one line, which rods between them cannot hold; add one beside it".into());
+    }
+    if d == 2 || points.len() == 3 {
+        return Ok(vec![a, b, c]);
+    }
+    let normal = cross(bar, minus(points[c], points[a]));
+    let off_plane = |x: [f64; 3]| dot(normal, minus(x, points[a])).abs() / (norm(normal) * length);
+    let e = farthest(&off_plane);
+    if off_plane(points[e]) < FLAT {
+        return Err("its particles lie in one plane, which rods between them cannot hold; add one beside it".into());
+    }
+    Ok(vec![a, b, c, e])
+}

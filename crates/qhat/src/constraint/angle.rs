@@ -1,0 +1,113 @@
+//! Angle: an arm stands at an angle to another arm, or to a fixed direction; the angle may follow a schedule α(t): a motor.
+//!
+//! ```text
+//! u, w   the two arms, or u a fixed direction
+//! n      plane: across it, so that angles count counterclockwise;   space: (u × w)/|u × w|
+//! φ = atan2(n·(u × w), u·w)       from u to w: in (−π, π] in the plane, in [0, π] in space
+//! ∂φ/∂w = n × w/|w|²,   ∂φ/∂u = −n × u/|u|²
+//! C = φ − α(t)                    [rad],  less whole turns so that |C| ≤ π;   λ: a torque [N·m]
+//! C_t = −α̇
+//! ```
+//!
+//! λ turns the second arm by +λ and the first by −λ; what a fixed direction takes goes to the ground, and nothing is pushed in sum.
+//! A motor gives the power λ α̇. α may run on over any number of turns in the plane: an arm that stands where it should is at C = 0 however
+//! often it went round, and no count is kept.
+//!
+//! Fails where an arm has no length. In the plane C jumps where the arm is wrong by half a turn. In space φ has no derivative at 0 and π, where
+//! two arms in line are two conditions and not one: keep α inside. The numbers are then undefined, and a step says so.
+
+use super::arms::Arms;
+use super::smooth::Smooth;
+use crate::force::finite;
+use crate::number::{Number, cross, dot, norm, raised, scaled};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+use std::f64::consts::TAU;
+
+/// The angle from one arm to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Angle {
+    /// The first arm, if it is one, and the second.
+    arms: Arms,
+    /// The first, if it stays.
+    direction: [f64; 3],
+    angle: Schedule,
+}
+
+impl Angle {
+    /// The angle α [rad] from the arm `from` to the arm `to`, each from the first of its particles to the second.
+    pub fn between(from: [ParticleId; 2], to: [ParticleId; 2], angle: impl Into<Schedule>) -> Self {
+        Angle { arms: Arms::new([from, to]), direction: [0.0; 3], angle: angle.into() }
+    }
+
+    /// The angle α [rad] from a direction of any length to the arm `to`; its third component is ignored in two dimensions.
+    pub fn from_direction(direction: [f64; 3], to: [ParticleId; 2], angle: impl Into<Schedule>) -> Self {
+        Angle { arms: Arms::new([to]), direction, angle: angle.into() }
+    }
+
+    fn has_direction(&self) -> bool {
+        self.arms.count() == 1
+    }
+}
+
+impl Smooth for Angle {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.arms.particles().to_vec()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (u, w): ([N; D], [N; D]) = match self.has_direction() {
+            true => (std::array::from_fn(|k| N::constant(self.direction[k])), self.arms.vector(0, x)),
+            false => (self.arms.vector(0, x), self.arms.vector(1, x)),
+        };
+        let across = cross(raised(u), raised(w));
+        let [zero, one] = [0.0, 1.0].map(N::constant);
+        let (sine, n) = if D == 2 {
+            (across[2], [zero, zero, one])
+        } else {
+            let sine = norm(across);
+            (sine, across.map(|component| component / sine))
+        };
+        let (angle, rate) = self.angle.at(t);
+        let C = within_half_a_turn(N::atan2(sine, dot(u, w)) - angle);
+        let turned = |arm: [N; D], sign: f64| -> [N; D] {
+            let turned = cross(n, raised(arm));
+            scaled(N::constant(sign) / dot(arm, arm), std::array::from_fn(|k| turned[k]))
+        };
+        let is_last = |arm: usize| arm + 1 == self.arms.count();
+        self.arms.spread(|arm| if is_last(arm) { turned(w, 1.0) } else { turned(u, -1.0) }, gradient);
+        (C, -rate)
+    }
+
+    fn scale(&self, _: f64) -> f64 {
+        1.0
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if (0..self.arms.count()).any(|arm| self.arms.is_without_length(arm)) {
+            return Err("an arm goes from one particle to another".into());
+        }
+        if self.has_direction() {
+            self.direction.iter().try_for_each(|&component| finite("the direction", component))?;
+            if self.direction == [0.0; 3] {
+                return Err("a direction needs a length".into());
+            }
+        }
+        self.angle.check("an angle")
+    }
+}
+
+/// The angle less whole turns, so that it is at most half a turn.
+pub(super) fn within_half_a_turn<N: Number>(angle: N) -> N {
+    angle - N::constant(TAU * (angle.value() / TAU).round())
+}

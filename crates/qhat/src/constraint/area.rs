@@ -1,0 +1,73 @@
+//! Area: a polygon keeps its area, or one that follows a schedule A(t). What is inside is incompressible. In the plane.
+//!
+//! ```text
+//! C = ½ Σ (x_i − x_0) × (x_{i+1} − x_0) − A(t)       [m²],  λ: the pressure inside [N/m]
+//! ∂C/∂x_i = ½ (y_{i+1} − y_{i−1}, x_{i−1} − x_{i+1})
+//! C_t = −Ȧ
+//! ```
+//!
+//! Positive where the corners run counterclockwise. Places count from x_0, so that a polygon far from the origin keeps its digits.
+//! Fails where all corners fall into one place: the gradient vanishes. Sides may cross; the sum then counts loops with their sign.
+
+use super::smooth::Smooth;
+use crate::number::{Number, minus};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A polygon that keeps its area, in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Area {
+    /// Its corners in order, three or more, each particle once.
+    pub corners: Vec<ParticleId>,
+    /// A [m²], positive where the corners run counterclockwise.
+    pub area: Schedule,
+}
+
+impl Smooth for Area {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn dimension(&self) -> Option<usize> {
+        Some(2)
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.corners.clone()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let count = self.corners.len();
+        let (area, rate) = self.area.at(t);
+        let origin = x(0);
+        let mut twice = N::constant(0.0);
+        for i in 0..count {
+            let (before, after) = (x((i + count - 1) % count), x((i + 1) % count));
+            let (a, b) = (minus(x(i), origin), minus(after, origin));
+            twice = twice + (a[0] * b[1] - a[1] * b[0]);
+            let across = minus(after, before);
+            gradient(std::array::from_fn(|k| if k == 0 { across[1].times(0.5) } else { across[0].times(-0.5) }));
+        }
+        (twice.times(0.5) - area, -rate)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        self.area.value(0.0).abs().max(extent * extent)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.corners.len() < 3 {
+            return Err(format!("a polygon has three corners or more, not {}", self.corners.len()));
+        }
+        if (1..self.corners.len()).any(|i| self.corners[..i].contains(&self.corners[i])) {
+            return Err("a particle can be one corner of a polygon only".into());
+        }
+        self.area.check("an area")
+    }
+}

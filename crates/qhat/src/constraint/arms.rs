@@ -1,0 +1,71 @@
+//! Arms: vectors from one particle to another, of which several kinds are functions. What turns ∂C/∂d of each arm into the gradient of
+//! C, wherever the same particle ends several of them.
+//!
+//! ```text
+//! d = x_b − x_a,   ∂C/∂x_i = Σ (∂C/∂d of the arms that end at i) − Σ (∂C/∂d of those that begin there)
+//! ```
+
+use crate::number::{Number, minus, plus};
+use crate::system::ParticleId;
+
+/// Which particles the arms of a constraint go between.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Arms {
+    /// Each once.
+    particles: Vec<ParticleId>,
+    /// Where each arm begins and ends, counting `particles`.
+    ends: Vec<[usize; 2]>,
+}
+
+impl Arms {
+    pub(super) fn new(arms: impl IntoIterator<Item = [ParticleId; 2]>) -> Self {
+        let mut particles: Vec<ParticleId> = Vec::new();
+        let mut place = |id: ParticleId| match particles.iter().position(|known| *known == id) {
+            Some(place) => place,
+            None => {
+                particles.push(id);
+                particles.len() - 1
+            }
+        };
+        let ends = arms.into_iter().map(|[a, b]| [place(a), place(b)]).collect();
+        Arms { particles, ends }
+    }
+
+    pub(super) fn particles(&self) -> &[ParticleId] {
+        &self.particles
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether an arm begins where it ends.
+    pub(super) fn is_without_length(&self, arm: usize) -> bool {
+        self.ends[arm][0] == self.ends[arm][1]
+    }
+
+    /// d of one arm.
+    pub(super) fn vector<N: Number, const D: usize>(&self, arm: usize, x: &impl Fn(usize) -> [N; D]) -> [N; D] {
+        let [a, b] = self.ends[arm];
+        minus(x(b), x(a))
+    }
+
+    /// Hands ∂C/∂x to `gradient`, particle after particle, from ∂C/∂d of each arm.
+    pub(super) fn spread<N: Number, const D: usize>(
+        &self,
+        of_arm: impl Fn(usize) -> [N; D],
+        gradient: &mut impl FnMut([N; D]),
+    ) {
+        for i in 0..self.particles.len() {
+            let mut sum = [N::constant(0.0); D];
+            for (arm, &[a, b]) in self.ends.iter().enumerate() {
+                if b == i {
+                    sum = plus(sum, of_arm(arm));
+                } else if a == i {
+                    sum = minus(sum, of_arm(arm));
+                }
+            }
+            gradient(sum);
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Gears: whole multiples of the angles of arms, and ways along directions, that add up to a given angle but for whole turns. Wheels that
+//! mesh, planets and all, a belt, a rack and its pinion, the hands of a clock. In the plane.
+//!
+//! ```text
+//! d of each arm,   arg d = atan2(d_y, d_x)
+//! C = Σ (z arg d + k·d) − α(t)            [rad],  less whole turns so that |C| ≤ π;   λ [N·m]
+//! ∂C/∂d = z (−d_y, d_x)/|d|² + k,   C_t = −α̇
+//! ```
+//!
+//! An arm that goes round adds z whole turns: as z is an integer, C(q, t) does not depend on how often it did, and no count is kept. That
+//! is what teeth are: wheels of z₁ and z₂ teeth fit into each other wherever z₁ φ₁ + z₂ φ₂ is right but for whole turns, one a
+//! tooth. Angles are counted from the line between the centres, from c₁ to c₂ at ψ, which may itself turn (a planet):
+//!
+//! ```text
+//! z₁ (φ₁ − ψ) + z₂ (φ₂ − ψ) = α           outside each other; z₂ < 0: one inside the other, or a belt
+//! φ − k·d = α, k = e/r, d = x_p − x_c     a rack that moves along e past a pinion of radius r to the left of it
+//! ```
+//!
+//! A common factor of the z is taken out: what is left says the same and has the fewest places that fit. The wheels turn by λ z₁
+//! and λ z₂, and what is left over of that pushes the centres.
+//!
+//! Fails where an arm has no length. C jumps half a tooth away from where it holds: a step that starts there slips to the next. A ratio that is
+//! no fraction of whole numbers has no such function of the positions: it would need a count of turns.
+
+use super::angle::within_half_a_turn;
+use super::arms::Arms;
+use super::smooth::Smooth;
+use crate::force::finite;
+use crate::number::{Number, dot};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// More leave less than a part in a thousand of a turn between two teeth. The sum of two wheels' counts, too.
+const MOST_TEETH: u32 = 1000;
+
+/// What an arm adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    /// z arg d.
+    Turn(i32),
+    /// k·d, k in rad/m.
+    Way([f64; 2]),
+}
+
+/// Angles and ways that are coupled, in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gears {
+    arms: Arms,
+    parts: Vec<Part>,
+    angle: Schedule,
+}
+
+impl Gears {
+    /// Two wheels with so many teeth, each an arm from its centre to a point of it, that mesh at α [rad]; one of the numbers is negative where
+    /// one wheel lies inside the other, or a belt connects them.
+    pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Schedule>) -> Self {
+        let [[c1, _], [c2, _]] = wheels;
+        let common = divisor(teeth[0].unsigned_abs(), teeth[1].unsigned_abs()).max(1) as i32;
+        let [z1, z2] = teeth.map(|z| z / common);
+        let centres = ([c1, c2], z1.saturating_add(z2).saturating_neg());
+        let arms = [(wheels[0], z1), (wheels[1], z2), centres];
+        // Equal wheels on a belt: the line between the centres drops out.
+        Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
+    }
+
+    /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: what turns in bearings of the ground.
+    pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Schedule>) -> Self {
+        let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
+        Gears { arms: Arms::new(ends), parts, angle: angle.into() }
+    }
+
+    /// A pinion, an arm from its centre to a point of it, and a point of the rack that moves along a direction of any length; the pinion of
+    /// this radius [m] is to the left of it.
+    pub fn rack(
+        pinion: [ParticleId; 2],
+        rack: ParticleId,
+        along: [f64; 2],
+        radius: f64,
+        angle: impl Into<Schedule>,
+    ) -> Self {
+        let size = along[0].abs().max(along[1].abs());
+        let [x, y] = along.map(|component| component / size);
+        let k = -1.0 / (radius * (x * x + y * y).sqrt());
+        let parts = vec![Part::Turn(1), Part::Way([k * x, k * y])];
+        Gears { arms: Arms::new([pinion, [pinion[0], rack]]), parts, angle: angle.into() }
+    }
+}
+
+impl Smooth for Gears {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn dimension(&self) -> Option<usize> {
+        Some(2)
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.arms.particles().to_vec()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (angle, rate) = self.angle.at(t);
+        let way = |k: [f64; 2]| -> [N; D] { std::array::from_fn(|i| N::constant(k[i])) };
+        let mut sum = -angle;
+        for (arm, part) in self.parts.iter().enumerate() {
+            let d = self.arms.vector(arm, x);
+            sum = sum
+                + match *part {
+                    Part::Turn(z) => N::atan2(d[1], d[0]).times(z.into()),
+                    Part::Way(k) => dot(way(k), d),
+                };
+        }
+        let slope = |arm: usize| match self.parts[arm] {
+            Part::Turn(z) => {
+                let d = self.arms.vector(arm, x);
+                let factor = N::constant(z.into()) / dot(d, d);
+                std::array::from_fn(|i| if i == 0 { -(factor * d[1]) } else { factor * d[0] })
+            }
+            Part::Way(k) => way(k),
+        };
+        self.arms.spread(slope, gradient);
+        (within_half_a_turn(sum), -rate)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        let size = |part: &Part| match *part {
+            Part::Turn(z) => f64::from(z).abs(),
+            Part::Way([x, y]) => extent * (x * x + y * y).sqrt(),
+        };
+        self.parts.iter().map(size).fold(1.0, f64::max)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.parts.len() < 2 {
+            return Err("a gear couples two arms at least".into());
+        }
+        for (arm, part) in self.parts.iter().enumerate() {
+            if self.arms.is_without_length(arm) {
+                return Err(
+                    "an arm of a gear goes from its centre to another particle, and wheels that mesh have two centres"
+                        .into(),
+                );
+            }
+            match *part {
+                Part::Turn(z) if z.unsigned_abs() > MOST_TEETH => {
+                    return Err(format!("less their common factor, the numbers of teeth may be {MOST_TEETH} at most"));
+                }
+                Part::Turn(0) => return Err("a wheel without teeth takes no part; leave it out".into()),
+                Part::Turn(_) => {}
+                Part::Way(k) => {
+                    k.iter().try_for_each(|&component| finite("the direction over the radius of a rack", component))?
+                }
+            }
+        }
+        self.angle.check("the angle at which gears mesh")
+    }
+}
+
+/// The greatest common divisor.
+fn divisor(mut a: u32, mut b: u32) -> u32 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}

@@ -1,0 +1,106 @@
+//! Lengths: a weighted sum of distances, Σ w |d| = L(t). A rope over pulleys, a block and tackle, a winch; two lengths that stay
+//! equal, or in a ratio.
+//!
+//! ```text
+//! d = x_b − x_a of each segment,   n = d/|d|
+//! C = Σ w |d| − L(t)              [m],  λ [N]
+//! ∂C/∂d = w n,   C_t = −L̇
+//! ```
+//!
+//! −λ is the tension of the rope: a segment of weight w pulls its ends together with −w λ. Such a rope also pushes where λ > 0.
+//!
+//! A segment without length has no direction; its gradient is taken as zero, the shortest subgradient of |d|. Near there its
+//! curvature 1/|d| grows without bound, so that a load must not be pulled into its block.
+
+use super::arms::Arms;
+use super::smooth::Smooth;
+use crate::force::finite;
+use crate::number::{Number, norm, scaled};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A weighted sum of distances that is held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lengths {
+    segments: Arms,
+    weights: Vec<f64>,
+    total: Schedule,
+}
+
+impl Lengths {
+    /// Σ w |d| = L [m] over segments from one particle to another, each with its weight.
+    pub fn new(segments: &[([ParticleId; 2], f64)], total: impl Into<Schedule>) -> Self {
+        let (ends, weights): (Vec<_>, Vec<_>) = segments.iter().copied().unzip();
+        Lengths { segments: Arms::new(ends), weights, total: total.into() }
+    }
+
+    /// A rope of length L [m] over points, in order; a point that it passes several times is named as often.
+    pub fn pulley(points: &[ParticleId], total: impl Into<Schedule>) -> Self {
+        let segments: Vec<_> = points.windows(2).map(|pair| ([pair[0], pair[1]], 1.0)).collect();
+        Lengths::new(&segments, total)
+    }
+
+    /// |x_a − x_b| = k |x_c − x_d|; k = 1 keeps them equal.
+    pub fn ratio(ab: [ParticleId; 2], cd: [ParticleId; 2], k: f64) -> Self {
+        Lengths::new(&[(ab, 1.0), (cd, -k)], 0.0)
+    }
+}
+
+impl Smooth for Lengths {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.segments.particles().to_vec()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (total, rate) = self.total.at(t);
+        let length = |segment: usize| {
+            let d = self.segments.vector(segment, x);
+            let is_point = d.iter().all(|component| component.value() == 0.0);
+            if is_point { (N::constant(0.0), [N::constant(0.0); D]) } else { (norm(d), d) }
+        };
+        let mut C = -total;
+        for (segment, &weight) in self.weights.iter().enumerate() {
+            C = C + length(segment).0.times(weight);
+        }
+        let slope = |segment: usize| {
+            let (length, d) = length(segment);
+            if length.value() == 0.0 { d } else { scaled(N::constant(self.weights[segment]) / length, d) }
+        };
+        self.segments.spread(slope, gradient);
+        (C, -rate)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        extent * self.weights.iter().fold(0.0, |most: f64, weight| most.max(weight.abs()))
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.weights.is_empty() {
+            return Err("a rope goes over two points at least".into());
+        }
+        for (segment, &weight) in self.weights.iter().enumerate() {
+            finite("a weight", weight)?;
+            if weight == 0.0 {
+                return Err("a segment of weight 0 says nothing; leave it out".into());
+            }
+            if self.segments.is_without_length(segment) {
+                return Err("a segment goes from one particle to another".into());
+            }
+        }
+        self.total.check("the length of a rope")?;
+        if self.total.value(0.0) <= 0.0 && self.weights.iter().all(|&weight| weight > 0.0) {
+            return Err(format!("the length of a rope must be above 0, but is {} m", self.total.value(0.0)));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,89 @@
+//! Relation: a linear relation between places, Σ w_i x_i = p. One particle in the middle of two others, the centre of mass at a
+//! point, two particles at one place.
+//!
+//! ```text
+//! C = Σ w_i x_i − p(t)      d rows [m], λ: force on a particle of weight 1 [N]
+//! J = w_i I on each,   γ = −p̈,   C_t = −ṗ
+//! ```
+
+use super::smooth::Smooth;
+use crate::force::finite;
+use crate::number::Number;
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A weighted sum of places that is held at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Relation {
+    /// The particles with their weights, each particle once.
+    pub terms: Vec<(ParticleId, f64)>,
+    /// p [m]; the third component is ignored in two dimensions.
+    pub point: [Schedule; 3],
+}
+
+impl Relation {
+    /// a and b at one place: x_a − x_b = 0.
+    pub fn coincidence(a: ParticleId, b: ParticleId) -> Self {
+        Relation::homogeneous([(a, 1.0), (b, -1.0)])
+    }
+
+    /// m in the middle of a and b: x_m − ½ x_a − ½ x_b = 0.
+    pub fn midpoint(m: ParticleId, a: ParticleId, b: ParticleId) -> Self {
+        Relation::homogeneous([(m, 1.0), (a, -0.5), (b, -0.5)])
+    }
+
+    /// Σ w_i x_i = 0.
+    pub fn homogeneous(terms: impl Into<Vec<(ParticleId, f64)>>) -> Self {
+        Relation { terms: terms.into(), point: [0.0; 3].map(Schedule::Constant) }
+    }
+}
+
+impl Smooth for Relation {
+    fn row_count(&self, dimension: usize) -> usize {
+        dimension
+    }
+
+    fn is_vector(&self) -> bool {
+        true
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.terms.iter().map(|&(particle, _)| particle).collect()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        row: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (point, rate) = self.point[row].at(t);
+        let mut C = -point;
+        for (i, &(_, weight)) in self.terms.iter().enumerate() {
+            C = C + x(i)[row].times(weight);
+            gradient(std::array::from_fn(|k| N::constant(if k == row { weight } else { 0.0 })));
+        }
+        (C, -rate)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        extent * self.terms.iter().fold(0.0, |most: f64, (_, weight)| most.max(weight.abs()))
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for (i, (particle, weight)) in self.terms.iter().enumerate() {
+            finite("a weight", *weight)?;
+            if *weight == 0.0 {
+                return Err("a weight of 0 says nothing; leave the particle out".into());
+            }
+            if self.terms[..i].iter().any(|(other, _)| other == particle) {
+                return Err("each particle can have one weight; add them up".into());
+            }
+        }
+        if self.terms.is_empty() {
+            return Err("a relation needs particles".into());
+        }
+        self.point.iter().try_for_each(|point| point.check("the point of a relation"))
+    }
+}

@@ -1,0 +1,112 @@
+//! Volume: a tetrahedron, or any closed surface of triangles, keeps its volume, or one that follows a schedule V(t). In space.
+//!
+//! ```text
+//! a, b, c   the corners of each face, counted from x_0
+//! C = Σ a·(b × c)/6 − V(t)           [m³],  λ: the pressure inside [Pa]
+//! ∂C/∂a = Σ (b × c)/6 over the faces at a, turned so that a comes first
+//! C_t = −V̇
+//! ```
+//!
+//! Positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed, each side between two faces
+//! that run along it in opposite directions: then neither C nor its gradient depends on the point places are counted from. Fails
+//! where all corners lie in one line or place: the gradient vanishes.
+
+use super::smooth::Smooth;
+use crate::number::{Number, cross, dot, minus, plus, raised};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+use std::collections::HashSet;
+
+/// A closed surface that keeps its volume, in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// The corners of the surface, each once.
+    particles: Vec<ParticleId>,
+    /// The corners of each face, counting `particles`.
+    faces: Vec<[usize; 3]>,
+    /// The other two corners of the faces at each particle, in their order.
+    around: Vec<Vec<[usize; 2]>>,
+    volume: Schedule,
+}
+
+impl Volume {
+    /// A closed surface of triangles around V [m³].
+    pub fn new(triangles: &[[ParticleId; 3]], volume: impl Into<Schedule>) -> Self {
+        let mut particles: Vec<ParticleId> = triangles.iter().flatten().copied().collect();
+        particles.sort_unstable();
+        particles.dedup();
+        let place = |id: ParticleId| particles.binary_search(&id).expect("it was put there");
+        let faces: Vec<[usize; 3]> = triangles.iter().map(|corners| corners.map(place)).collect();
+        let mut around = vec![Vec::new(); particles.len()];
+        for &[a, b, c] in &faces {
+            around[a].push([b, c]);
+            around[b].push([c, a]);
+            around[c].push([a, b]);
+        }
+        Volume { particles, faces, around, volume: volume.into() }
+    }
+
+    /// (b − a)·((c − a) × (d − a))/6 = V [m³].
+    pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Schedule>) -> Self {
+        Volume::new(&[[a, c, b], [a, b, d], [a, d, c], [b, c, d]], volume)
+    }
+}
+
+impl Smooth for Volume {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn dimension(&self) -> Option<usize> {
+        Some(3)
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.particles.clone()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        const SIXTH: f64 = 1.0 / 6.0;
+        let (volume, rate) = self.volume.at(t);
+        let origin = x(0);
+        let place = |i: usize| raised(minus(x(i), origin));
+        let mut six_fold = N::constant(0.0);
+        for &[a, b, c] in &self.faces {
+            six_fold = six_fold + dot(place(a), cross(place(b), place(c)));
+        }
+        for faces in &self.around {
+            let mut sum = [N::constant(0.0); 3];
+            for &[b, c] in faces {
+                sum = plus(sum, cross(place(b), place(c)));
+            }
+            gradient(std::array::from_fn(|k| sum[k].times(SIXTH)));
+        }
+        (six_fold.times(SIXTH) - volume, -rate)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        self.volume.value(0.0).abs().max(extent * extent * extent)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let mut sides = HashSet::new();
+        for &[a, b, c] in &self.faces {
+            if a == b || b == c || c == a {
+                return Err("a face has three different corners".into());
+            }
+            if ![[a, b], [b, c], [c, a]].into_iter().all(|side| sides.insert(side)) {
+                return Err("two faces run along one side in the same direction: turn one of them round".into());
+            }
+        }
+        if self.faces.is_empty() || sides.iter().any(|&[a, b]| !sides.contains(&[b, a])) {
+            return Err("the surface is not closed: each side needs a face on either side of it".into());
+        }
+        self.volume.check("a volume")
+    }
+}

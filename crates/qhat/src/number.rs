@@ -1,0 +1,177 @@
+//! Numbers that may carry a derivative: formulas written once over them give values, and with [`Dual`] their rates too.
+//!
+//! ```text
+//! x + ẋ ε with ε² = 0:   f(x + ẋ ε) = f(x) + f'(x) ẋ ε
+//! ```
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number, alone or with a derivative.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// A number that does not change.
+    fn constant(value: f64) -> Self;
+    /// The number without its derivative.
+    fn value(self) -> f64;
+    /// Its derivative; 0 for a plain number.
+    fn slope(self) -> f64;
+    /// f(x) where f and its derivative are known at x.
+    fn with(self, f: f64, derivative: f64) -> Self;
+
+    /// s x.
+    fn times(self, s: f64) -> Self {
+        Self::constant(s) * self
+    }
+
+    /// √x, with an infinite derivative at 0.
+    fn sqrt(self) -> Self {
+        let root = self.value().sqrt();
+        self.with(root, 0.5 / root)
+    }
+
+    /// The angle of (x, y) from the first axis, in (−π, π] [rad].
+    fn atan2(y: Self, x: Self) -> Self {
+        let (r, angle) = (x.value() * x.value() + y.value() * y.value(), libm::atan2(y.value(), x.value()));
+        // dθ = (x dy − y dx)/r²
+        Self::of(angle, (x.value() * y.slope() - y.value() * x.slope()) / r)
+    }
+
+    /// The number with this value and this derivative.
+    fn of(value: f64, slope: f64) -> Self;
+}
+
+impl Number for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn slope(self) -> f64 {
+        0.0
+    }
+    fn with(self, f: f64, _: f64) -> Self {
+        f
+    }
+    fn of(value: f64, _: f64) -> Self {
+        value
+    }
+}
+
+/// x + ẋ ε.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Dual {
+    pub(crate) value: f64,
+    pub(crate) slope: f64,
+}
+
+impl Number for Dual {
+    fn constant(value: f64) -> Self {
+        Dual { value, slope: 0.0 }
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn slope(self) -> f64 {
+        self.slope
+    }
+    fn with(self, f: f64, derivative: f64) -> Self {
+        Dual { value: f, slope: derivative * self.slope }
+    }
+    fn of(value: f64, slope: f64) -> Self {
+        Dual { value, slope }
+    }
+}
+
+impl Add for Dual {
+    type Output = Dual;
+    fn add(self, other: Dual) -> Dual {
+        Dual { value: self.value + other.value, slope: self.slope + other.slope }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Dual;
+    fn sub(self, other: Dual) -> Dual {
+        Dual { value: self.value - other.value, slope: self.slope - other.slope }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Dual;
+    fn mul(self, other: Dual) -> Dual {
+        Dual { value: self.value * other.value, slope: self.slope * other.value + self.value * other.slope }
+    }
+}
+
+impl Div for Dual {
+    type Output = Dual;
+    fn div(self, other: Dual) -> Dual {
+        let value = self.value / other.value;
+        Dual { value, slope: (self.slope - value * other.slope) / other.value }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Dual;
+    fn neg(self) -> Dual {
+        Dual { value: -self.value, slope: -self.slope }
+    }
+}
+
+/// Σ a_k b_k.
+pub(crate) fn dot<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> N {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+}
+
+/// a − b.
+pub(crate) fn minus<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+/// a + b.
+pub(crate) fn plus<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// s a.
+pub(crate) fn scaled<N: Number, const D: usize>(s: N, a: [N; D]) -> [N; D] {
+    a.map(|a| s * a)
+}
+
+/// |a|.
+pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
+    dot(a, a).sqrt()
+}
+
+/// A vector of the plane in space, with z = 0; one of space as it is.
+pub(crate) fn raised<N: Number, const D: usize>(a: [N; D]) -> [N; 3] {
+    std::array::from_fn(|k| if k < D { a[k] } else { N::constant(0.0) })
+}
+
+/// a × b.
+pub(crate) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation against the quotient of differences.
+    #[test]
+    fn slopes_are_derivatives() {
+        fn f<N: Number>(x: N, y: N) -> N {
+            let r = (x * x + y * y).sqrt();
+            N::atan2(y - x / r, x * y.times(3.0) + N::constant(2.0)) / r - (-x) * y
+        }
+        let (x, y, dx, dy) = (0.7, -1.3, 0.4, 0.9);
+        let dual = f(Dual { value: x, slope: dx }, Dual { value: y, slope: dy });
+        let h = 1e-5;
+        let difference = (f(x + h * dx, y + h * dy) - f(x - h * dx, y - h * dy)) / (2.0 * h);
+        assert_eq!(dual.value, f(x, y));
+        // Central differences at this h are good to h² and ε/h, 1e-10 each.
+        assert!((dual.slope - difference).abs() < 1e-9, "{} {difference}", dual.slope);
+    }
+}
