@@ -140,6 +140,14 @@ pub(crate) fn scaled<N: Number, const D: usize>(s: N, a: [N; D]) -> [N; D] {
     a.map(|a| s * a)
 }
 
+/// a × b, in three dimensions.
+pub(crate) fn cross<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i] * b[j] - a[j] * b[i]
+    })
+}
+
 /// |a|.
 pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
     dot(a, a).sqrt()

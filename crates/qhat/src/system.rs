@@ -446,6 +446,7 @@ impl SystemBuilder {
         };
         for (name, constraint) in &self.constraints {
             let outcome = exists(constraint.particles()).and_then(|()| constraint.check());
+            let outcome = outcome.and_then(|()| constraint.fits(self.dimension.number()));
             outcome.map_err(|message| BuildError::Constraint { name: name.clone(), message })?;
         }
         for (index, force) in self.forces.iter().enumerate() {

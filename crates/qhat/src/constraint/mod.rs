@@ -3,14 +3,34 @@
 //! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
+mod anchor;
+mod curve;
+mod direction;
 mod distance;
+mod moment;
 mod nail;
+mod on_circle;
+mod on_curve;
+mod on_line;
+mod on_plane;
+mod on_sphere;
 mod relation;
 mod rows;
 mod smooth;
+mod spline;
+#[cfg(test)]
+mod tests;
 
+pub use anchor::{Anchor, DrivenPoint};
+pub use curve::Curve;
+pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
 pub use nail::{Nail, NailForm};
+pub use on_circle::OnCircle;
+pub use on_curve::OnCurve;
+pub use on_line::{Line, OnLine};
+pub use on_plane::{OnPlane, Plane};
+pub use on_sphere::OnSphere;
 pub use relation::Relation;
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
@@ -69,6 +89,11 @@ pub(crate) trait Holds {
 
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
+
+    /// Why it cannot be in d dimensions, in words.
+    fn fits(&self, _dimension: usize) -> Result<(), String> {
+        Ok(())
+    }
 
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
@@ -154,6 +179,9 @@ macro_rules! constraints {
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
             }
+            fn fits(&self, dimension: usize) -> Result<(), String> {
+                match self { $(Constraint::$kind(constraint) => constraint.fits(dimension),)* }
+            }
             fn check(&self) -> Result<(), String> {
                 match self { $(Constraint::$kind(constraint) => constraint.check(),)* }
             }
@@ -175,4 +203,16 @@ constraints! {
     Nail,
     /// A linear relation between the places of particles.
     Relation,
+    /// Two particles whose connecting line has a given direction.
+    Direction,
+    /// A particle on a line.
+    OnLine,
+    /// A particle on a plane.
+    OnPlane,
+    /// A particle at a distance from a point or another particle that may be driven.
+    OnSphere,
+    /// A particle on a circle in space.
+    OnCircle,
+    /// A particle on a smooth curve: a bead on a wire.
+    OnCurve,
 }
