@@ -43,6 +43,9 @@ pub fn shipped() -> &'static [Shipped] {
         scenes![
             "pendulum",
             "compound-pendulum",
+            "cycloid-pendulum",
+            "brachistochrone",
+            "kapitza",
             "double-pendulum",
             "conical-pendulum",
             "coupled-pendulums",
@@ -54,6 +57,8 @@ pub fn shipped() -> &'static [Shipped] {
             "bridge-truss",
             "girder",
             "four-bar",
+            "crank-slider",
+            "trammel",
             "jansen-leg",
             "strandbeest",
             "watt",

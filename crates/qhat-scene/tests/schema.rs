@@ -9,6 +9,10 @@ fn every_key() -> Value {
     toml::from_str(include_str!("every-key.toml")).unwrap()
 }
 
+fn every_key_in_space() -> Value {
+    toml::from_str(include_str!("every-key-in-space.toml")).unwrap()
+}
+
 fn read(scene: &Value) -> Result<(), SceneErrors> {
     load(&scene.to_string(), "scene.json", Format::Json).map(|_| ())
 }
@@ -24,6 +28,7 @@ fn the_schema_is_of_draft_2020_12_and_accepts_the_shipped_scenes() {
     }
     assert!(validator.is_valid(&every_key()));
     read(&every_key()).unwrap_or_else(|errors| panic!("{errors}"));
+    read(&every_key_in_space()).unwrap_or_else(|errors| panic!("{errors}"));
 }
 
 /// The scene with one value put in the place of another, or removed, for every place and every value.
@@ -84,7 +89,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 18] = [
+const BETWEEN_KEYS: [&str; 33] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -103,13 +108,28 @@ const BETWEEN_KEYS: [&str; 18] = [
     "a body without a moment of inertia",
     "the mass of a body",
     "none of its principal moments",
+    "is given by `",
+    "needs a `range`",
+    "is named twice",
+    "can have one weight",
+    "a weight of 0",
+    "must not be zero",
+    "but goes from",
+    "of a curve are at one place",
+    "a curve needs",
+    "gives no direction",
+    "is rigid and held in the form",
+    "has no axis in two",
+    "no plane to be on",
+    "is not finite everywhere",
+    "needs a radius",
 ];
 
 #[test]
 fn the_reader_and_the_schema_agree() {
     let schema = json_schema();
     let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let variants = variants(&every_key());
+    let variants = [variants(&every_key()), variants(&every_key_in_space())].concat();
     assert!(variants.len() > 1000);
     for variant in variants {
         match (validator.is_valid(&variant), read(&variant)) {
@@ -149,6 +169,7 @@ fn the_guide_and_the_test_scene_name_every_key() {
     let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene-file.md")).unwrap();
     let mut places = Vec::new();
     collect_places(&every_key(), String::new(), &mut places);
+    collect_places(&every_key_in_space(), String::new(), &mut places);
     for key in known {
         assert!(guide.contains(&format!("`{key}`")), "docs/scene-file.md does not name `{key}`");
         assert!(places.iter().any(|place| place.ends_with(&format!("/{key}"))), "every-key.toml lacks `{key}`");

@@ -365,6 +365,14 @@ impl SystemBuilder {
         ParticleId(self.particles.len() - 1)
     }
 
+    /// m [kg] of a particle that was added.
+    ///
+    /// # Panics
+    /// Where there is none with this id.
+    pub fn mass(&self, particle: ParticleId) -> f64 {
+        self.particles[particle.0].mass
+    }
+
     /// Adds a constraint under a name that reports will use.
     pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> &mut Self {
         self.constraints.push((name.into(), constraint.into()));

@@ -159,7 +159,7 @@ fn every_kind_holds_and_accounts_for_its_energy() {
                 simulation.step().unwrap_or_else(|error| panic!("{name} {integrator}: {error}"));
             }
             let relative: Vec<f64> =
-                simulation.terms().residual.iter().zip(&scales).map(|(C, scale)| C / scale).collect();
+                simulation.terms().residual.iter().zip(&scales).map(|(residual, scale)| residual / scale).collect();
             assert!(largest(&relative) <= 1e-10, "{name} {integrator}: {relative:?}");
             let error = simulation.energy_error_max();
             assert!(error <= energy, "{name} {integrator}: {error:e} of the energy is missing");

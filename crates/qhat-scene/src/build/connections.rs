@@ -1,16 +1,15 @@
 //! `[[constraints]]`, `[[springs]]` and `[[loads]]`: what refers to particles.
 
 use super::Assembly;
-use crate::model::{Constraint, Distance, Id, Load, Nail, Name, PointLoad, Spring};
+use crate::model::{Constraint, Distance, DistanceForm, Driven, Id, Load, Nail, NailForm, Name, PointLoad, Spring};
 use crate::tree::Node;
-use qhat::{ParticleId, PointForce};
+use qhat::{ParticleId, PointForce, Schedule};
 
 impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
     pub(super) fn take_constraint_names(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
-            let (Constraint::Distance(Distance { id, .. }) | Constraint::Nail(Nail { id, .. })) = constraint;
-            if let Some(Name(name)) = id
+            if let Some(Name(name)) = constraint.id()
                 && !self.constraint_names.insert(name.clone())
             {
                 let span = self.tree.key("constraints").item(index).key("id").span.clone();
@@ -37,14 +36,25 @@ impl Assembly<'_, '_, '_> {
             match constraint {
                 Constraint::Distance(distance) => self.add_distance(distance, place),
                 Constraint::Nail(nail) => self.add_nail(nail, place),
+                Constraint::Coincidence(it) => self.add_coincidence(it, place),
+                Constraint::Midpoint(it) => self.add_midpoint(it, place),
+                Constraint::CenterOfMass(it) => self.add_center_of_mass(it, place),
+                Constraint::Relation(it) => self.add_relation(it, place),
+                Constraint::Direction(it) => self.add_direction(it, place),
+                Constraint::Line(it) => self.add_line(it, place),
+                Constraint::Plane(it) => self.add_plane(it, place),
+                Constraint::Sphere(it) => self.add_sphere(it, place),
+                Constraint::Circle(it) => self.add_circle(it, place),
+                Constraint::Curve(it) => self.add_curve(it, place),
             };
         }
     }
 
     fn add_distance(&mut self, distance: &Distance, place: &Node) -> Option<()> {
         let (a, b) = self.pair(&distance.between, place)?;
-        let length = match distance.length {
-            Some(length) => length,
+        let length = match &distance.length {
+            Some(Driven::Number(length)) => *length,
+            Some(driven) => return self.add_driven_rod(distance, driven, (a, b), place),
             None => {
                 let length = self.distance(a.0, b.0);
                 let [one, other] = distance.between.each_ref().map(|Id(id)| self.report.quoted(id));
@@ -73,20 +83,46 @@ impl Assembly<'_, '_, '_> {
         Some(())
     }
 
+    /// A rod whose length follows the time.
+    fn add_driven_rod(
+        &mut self,
+        distance: &Distance,
+        length: &Driven,
+        (a, b): (ParticleId, ParticleId),
+        place: &Node,
+    ) -> Option<()> {
+        if distance.compliance > 0.0 || distance.form != DistanceForm::Length {
+            let message = "a rod whose length is an expression is rigid and held in the form `length`";
+            let help = "leave out `form`, `compliance` and `damping`, or give `length` as a number".to_owned();
+            self.report.error(place.key("length").span.clone(), message, Some(help));
+            return None;
+        }
+        let radius = self.schedule(length, place.key("length"))?;
+        let [Id(one), Id(other)] = &distance.between;
+        let name = match &distance.id {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name(format!("{one}-{other}")),
+        };
+        self.builder.constraint(name, qhat::OnSphere::new(a, b, radius));
+        Some(())
+    }
+
     fn add_nail(&mut self, nail: &Nail, place: &Node) -> Option<()> {
         let particle = self.particle(&nail.particle, place.key("particle"))?;
-        let at = match &nail.at {
-            Some(at) => at.padded(),
-            None => {
-                let start = &self.positions[particle.0 * self.dimension..][..self.dimension];
-                std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
-            }
-        };
+        let start = self.start(particle);
+        let point = self.schedules_or(nail.at.as_ref(), place.key("at"), start)?;
         let name = match &nail.id {
             Some(Name(name)) => name.clone(),
             None => self.free_constraint_name(format!("nail({})", nail.particle.0)),
         };
-        self.builder.constraint(name, qhat::Nail { particle, at, form: nail.form.into() });
+        if let [Schedule::Constant(x), Schedule::Constant(y), Schedule::Constant(z)] = point {
+            self.builder.constraint(name, qhat::Nail { particle, at: [x, y, z], form: nail.form.into() });
+        } else if nail.form == NailForm::Vector {
+            self.builder.constraint(name, qhat::Relation::driven(particle, point));
+        } else {
+            let message = "a nail whose point is an expression is held in the form `vector`";
+            self.report.error(place.key("form").span.clone(), message, Some("leave out `form`".into()));
+        }
         Some(())
     }
 
@@ -116,7 +152,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// Two different particles.
-    fn pair(&mut self, between: &[Id; 2], place: &Node) -> Option<(ParticleId, ParticleId)> {
+    pub(super) fn pair(&mut self, between: &[Id; 2], place: &Node) -> Option<(ParticleId, ParticleId)> {
         let place = place.key("between");
         let [one, other] = between;
         let (a, b) = (self.particle(one, place.item(0)), self.particle(other, place.item(1)));

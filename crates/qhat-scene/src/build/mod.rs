@@ -3,9 +3,11 @@
 
 mod bodies;
 mod connections;
+mod driven;
 mod expectations;
 mod generated;
 mod ids;
+mod kinds;
 mod particles;
 
 use crate::model::Document;

@@ -65,6 +65,11 @@ impl<'a> Meaning<'a> {
         self.text("x-length") == "dimension"
     }
 
+    /// Whether it is a number or the text of an expression.
+    pub(super) fn is_driven(&self) -> bool {
+        self.get("type").is_some_and(Json::is_array)
+    }
+
     pub(super) fn is_tagged(&self) -> bool {
         self.kinds().next().is_some()
     }
@@ -85,6 +90,7 @@ impl<'a> Meaning<'a> {
             "number" => "a number",
             "boolean" => "true or false",
             _ if self.is_tagged() => "a table",
+            _ if self.is_driven() => "a number or an expression of t",
             _ => "text",
         }
     }

@@ -51,6 +51,8 @@ impl<'a> Checker<'a, '_, '_> {
             ("array", Value::List(items)) => self.list(node, items, meaning, name),
             ("string", Value::Text(text)) => self.text(node, text, meaning, name),
             ("number" | "integer", Value::Number(number)) => self.number(node, *number, meaning, name),
+            ("", Value::Number(number)) if meaning.is_driven() => self.number(node, *number, meaning, name),
+            ("", Value::Text(text)) if meaning.is_driven() => self.text(node, text, meaning, name),
             ("boolean", Value::Truth(truth)) => Some(Json::Bool(*truth)),
             _ => self.mismatch(node, meaning, name),
         }

@@ -1,6 +1,7 @@
 //! `[[constraints]]`, `[[springs]]` and `[[loads]]`.
 
-use super::{Id, Name, Vector};
+use super::kinds::{CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere};
+use super::{Driven, DrivenVector, Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,36 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Constraint {
     Distance(Distance),
     Nail(Nail),
+    Coincidence(Coincidence),
+    Midpoint(Midpoint),
+    CenterOfMass(CenterOfMass),
+    Relation(Relation),
+    Direction(Direction),
+    Line(Line),
+    Plane(Plane),
+    Sphere(Sphere),
+    Circle(Circle),
+    Curve(Curve),
+}
+
+impl Constraint {
+    /// The name that the file gives it.
+    pub(crate) fn id(&self) -> Option<&Name> {
+        match self {
+            Constraint::Distance(it) => it.id.as_ref(),
+            Constraint::Nail(it) => it.id.as_ref(),
+            Constraint::Coincidence(it) => it.id.as_ref(),
+            Constraint::Midpoint(it) => it.id.as_ref(),
+            Constraint::CenterOfMass(it) => it.id.as_ref(),
+            Constraint::Relation(it) => it.id.as_ref(),
+            Constraint::Direction(it) => it.id.as_ref(),
+            Constraint::Line(it) => it.id.as_ref(),
+            Constraint::Plane(it) => it.id.as_ref(),
+            Constraint::Sphere(it) => it.id.as_ref(),
+            Constraint::Circle(it) => it.id.as_ref(),
+            Constraint::Curve(it) => it.id.as_ref(),
+        }
+    }
 }
 
 /// A rod: two particles stay as far apart as they are.
@@ -22,10 +53,10 @@ pub(crate) struct Distance {
     pub(crate) id: Option<Name>,
     /// The ids of the two particles at its ends.
     pub(crate) between: [Id; 2],
-    /// Its length [m], above 0; the distance at the start if left out.
+    /// Its length [m], a number above 0 or an expression of t; the distance at the start if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub(crate) length: Option<f64>,
+    pub(crate) length: Option<Driven>,
     /// The function that is held at zero: the length's error, or that of its square (the classic one).
     #[serde(default)]
     pub(crate) form: DistanceForm,
@@ -68,9 +99,9 @@ pub(crate) struct Nail {
     pub(crate) id: Option<Name>,
     /// The id of the particle it holds.
     pub(crate) particle: Id,
-    /// The point where it is [m]; where the particle starts if left out.
+    /// The point where it is [m], numbers or expressions of t; where the particle starts if left out.
     #[serde(default)]
-    pub(crate) at: Option<Vector>,
+    pub(crate) at: Option<DrivenVector>,
     /// The function that is held at zero: the offset itself, or its square (the classic one).
     #[serde(default)]
     pub(crate) form: NailForm,

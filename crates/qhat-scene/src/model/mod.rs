@@ -3,12 +3,15 @@
 
 pub(crate) mod body;
 mod constraint;
+mod driven;
 mod expect;
 pub(crate) mod generate;
+pub(crate) mod kinds;
 mod step;
 mod value;
 
-pub(crate) use constraint::{Constraint, Distance, Load, Nail, PointLoad, Spring};
+pub(crate) use constraint::{Constraint, Distance, DistanceForm, Load, Nail, NailForm, PointLoad, Spring};
+pub(crate) use driven::{Driven, DrivenVector};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use generate::Generate;
 pub(crate) use step::{Feedback, Forces, Step};
