@@ -46,6 +46,7 @@ pub fn shipped() -> &'static [Shipped] {
             "cycloid-pendulum",
             "brachistochrone",
             "kapitza",
+            "helix",
             "double-pendulum",
             "conical-pendulum",
             "coupled-pendulums",

@@ -89,7 +89,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 33] = [
+const BETWEEN_KEYS: [&str; 34] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -110,6 +110,7 @@ const BETWEEN_KEYS: [&str; 33] = [
     "none of its principal moments",
     "is given by `",
     "needs a `range`",
+    "needs an `axis`",
     "is named twice",
     "can have one weight",
     "a weight of 0",

@@ -60,7 +60,9 @@ mod terms;
 mod threads;
 
 pub use body::Body;
-pub use constraint::{Anchor, Curve, Direction, DrivenPoint, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane};
+pub use constraint::{
+    Anchor, Curve, Direction, DrivenPoint, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane,
+};
 pub use constraint::{Constraint, Distance, DistanceForm, Formulation, Jacobian, Nail, NailForm, Relation};
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};

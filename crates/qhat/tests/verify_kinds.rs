@@ -3,8 +3,8 @@
 mod systems;
 
 use qhat::{
-    Anchor, Constraint, Curve, Dimension, Direction, Expression, Integrator, OnCircle, OnCurve, OnLine, OnPlane, OnSphere,
-    Particle, ParticleId, Purpose, Relation, Schedule, Scope, Settings, Simulation, State, System,
+    Anchor, Constraint, Curve, Dimension, Direction, Expression, Integrator, OnCircle, OnCurve, OnLine, OnPlane,
+    OnSphere, Particle, ParticleId, Purpose, Relation, Schedule, Scope, Settings, Simulation, State, System,
 };
 use std::f64::consts::PI;
 use systems::G;
@@ -64,7 +64,7 @@ fn all() -> Vec<(&'static str, (System, State))> {
         ),
         (
             "slider",
-            system(&[&[0.0, 0.0], &[0.6, 0.8, ][..]], |p| {
+            system(&[&[0.0, 0.0], &[0.6, 0.8][..]], |p| {
                 vec![
                     OnSphere::new(p[0], [0.0, 1.0, 0.0], 1.0).into(),
                     Direction { a: p[0], b: p[1], along: driven("3 + sin(t)", "4") }.into(),
@@ -124,7 +124,9 @@ fn all() -> Vec<(&'static str, (System, State))> {
         ),
         (
             "bead on a parabola",
-            system(&[&[1.0, 0.5]], |p| vec![OnCurve { particle: p[0], curve: curve(&["s", "s^2/2"], -3.0, 3.0) }.into()]),
+            system(&[&[1.0, 0.5]], |p| {
+                vec![OnCurve { particle: p[0], curve: curve(&["s", "s^2/2"], -3.0, 3.0) }.into()]
+            }),
         ),
         (
             "bead on a helix",
@@ -182,7 +184,9 @@ fn the_same_held_otherwise_moves_the_same() {
         }
     };
     let circle = system(&[&[1.0, 0.0]], |p| vec![OnSphere::new(p[0], [0.0; 3], 1.0).into()]);
-    let wire = system(&[&[1.0, 0.0]], |p| vec![OnCurve { particle: p[0], curve: curve(&["cos(s)", "sin(s)"], -PI, PI) }.into()]);
+    let wire = system(&[&[1.0, 0.0]], |p| {
+        vec![OnCurve { particle: p[0], curve: curve(&["cos(s)", "sin(s)"], -PI, PI) }.into()]
+    });
     same("a circle as a wire", run(circle), run(wire));
     let tilted = |hold: fn(ParticleId) -> Constraint| system(&[&[1.0, 0.0, 0.0]], |p| vec![hold(p[0])]);
     let circle = tilted(|p| OnCircle::new(p, [0.0; 3], [0.0, 0.6, 0.8], 1.0).into());

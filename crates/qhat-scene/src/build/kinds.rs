@@ -1,7 +1,9 @@
 //! The kinds of `[[constraints]]` beyond rods and nails.
 
 use super::Assembly;
-use crate::model::kinds::{CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere};
+use crate::model::kinds::{
+    CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere,
+};
 use crate::model::{Driven, DrivenVector, Id, Name};
 use crate::tree::Node;
 use qhat::{Anchor, Constraint, ParticleId, Purpose, Schedule};
@@ -36,9 +38,12 @@ impl Assembly<'_, '_, '_> {
         if found.iter().any(Option::is_none) { None } else { Some(found.map(|id| id.expect("found"))) }
     }
 
-    /// Tells that a constraint needs one of two keys, and not both.
+    /// Tells that a constraint needs one of two keys, and not both; not where one is there and was refused already.
     fn needs_one(&mut self, place: &Node, kind: &str, keys: [&str; 2], both: bool) {
         let [one, other] = keys;
+        if !both && keys.iter().any(|key| place.get(key).is_some()) {
+            return;
+        }
         let what = if both { "not both" } else { "but has neither" };
         let message = format!("a {kind} is given by `{one}` or by `{other}`, {what}");
         let help = if both { format!("leave out `{one}` or `{other}`") } else { format!("add `{one}` or `{other}`") };
@@ -124,11 +129,7 @@ impl Assembly<'_, '_, '_> {
         let constraint = match (&it.between, &it.along) {
             (Some([one, other]), None) if it.at.is_none() => {
                 let between = place.key("between");
-                let named = [
-                    (&it.particle, place.key("particle")),
-                    (one, between.item(0)),
-                    (other, between.item(1)),
-                ];
+                let named = [(&it.particle, place.key("particle")), (one, between.item(0)), (other, between.item(1))];
                 let [particle, a, b] = self.different(named)?;
                 qhat::OnLine::through(particle, a, b)
             }
@@ -158,12 +159,8 @@ impl Assembly<'_, '_, '_> {
         let constraint = match (&it.through, &it.normal) {
             (Some([a, b, c]), None) if it.at.is_none() => {
                 let list = place.key("through");
-                let named = [
-                    (&it.particle, place.key("particle")),
-                    (a, list.item(0)),
-                    (b, list.item(1)),
-                    (c, list.item(2)),
-                ];
+                let named =
+                    [(&it.particle, place.key("particle")), (a, list.item(0)), (b, list.item(1)), (c, list.item(2))];
                 let [particle, corners @ ..] = self.different(named)?;
                 qhat::OnPlane::through(particle, corners)
             }
@@ -205,6 +202,7 @@ impl Assembly<'_, '_, '_> {
                 let message = "a circle has no axis in two dimensions";
                 self.report.error(place.key("axis").span.clone(), message, Some("leave out `axis`".into()));
             }
+            (None, _) if place.get("axis").is_some() => {}
             (None, _) => {
                 let message = "a circle needs an `axis` in three dimensions";
                 let help = "add `axis`, what it is at right angles to, as in `axis = [0.0, 1.0, 0.0]`".to_owned();
@@ -250,7 +248,8 @@ impl Assembly<'_, '_, '_> {
                 let squares: f64 = (0..self.dimension).map(|k| x[k] - p[k]).map(|x| x * x).sum();
                 let length = squares.sqrt();
                 if !(length > 0.0 && length.is_finite()) {
-                    let message = format!("a {kind} needs a radius, but the particle starts in its centre or too far away");
+                    let message =
+                        format!("a {kind} needs a radius, but the particle starts in its centre or too far away");
                     self.report.error(place.span.clone(), message, Some("give `radius` [m]".into()));
                     return None;
                 }
@@ -265,6 +264,9 @@ impl Assembly<'_, '_, '_> {
         let curve = match (&it.path, &it.points) {
             (Some(path), None) => {
                 let Some([from, to]) = it.range else {
+                    if place.get("range").is_some() {
+                        return None;
+                    }
                     let help = "add `range`, the values of s at its two ends, as in `range = [0.0, 1.0]`".to_owned();
                     self.report.error(place.span.clone(), "a curve by `path` needs a `range`", Some(help));
                     return None;

@@ -67,7 +67,9 @@ impl Curve {
             return Err("a curve may depend on nothing but s".into());
         }
         if !(from < to && (to - from).is_finite()) {
-            return Err(format!("the parameter of a curve must grow from its start to its end, but goes from {from} to {to}"));
+            return Err(format!(
+                "the parameter of a curve must grow from its start to its end, but goes from {from} to {to}"
+            ));
         }
         Curve::new(Form::Expressions(components), from, to)
     }

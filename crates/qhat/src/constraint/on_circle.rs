@@ -32,12 +32,7 @@ pub struct OnCircle {
 
 impl OnCircle {
     /// On a circle of a radius [m] about a centre, across an axis.
-    pub fn new(
-        particle: ParticleId,
-        center: impl Into<Anchor>,
-        axis: [f64; 3],
-        radius: impl Into<Schedule>,
-    ) -> Self {
+    pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Schedule>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }
 }

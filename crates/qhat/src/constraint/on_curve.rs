@@ -55,9 +55,7 @@ impl Smooth for OnCurve {
         let size = |k: usize| tangent[k].value().abs();
         let longest = (1..D).fold(0, |most, k| if size(k) > size(most) { k } else { most });
         let k = (longest + 1 + row) % D;
-        gradient(std::array::from_fn(|j| {
-            N::constant(if j == k { 1.0 } else { 0.0 }) - tangent[k] * slope[j]
-        }));
+        gradient(std::array::from_fn(|j| N::constant(if j == k { 1.0 } else { 0.0 }) - tangent[k] * slope[j]));
         (w[k], zero)
     }
 

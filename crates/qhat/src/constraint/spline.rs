@@ -99,7 +99,8 @@ impl Spline {
         if !self.closed && u < 0.0 {
             return [p + b * u, b, 0.0];
         }
-        let at = |u: f64| [p + u * (b + u * (m / 2.0 + u * (n - m) / (6.0 * h))), b + u * (m + u * (n - m) / (2.0 * h))];
+        let at =
+            |u: f64| [p + u * (b + u * (m / 2.0 + u * (n - m) / (6.0 * h))), b + u * (m + u * (n - m) / (2.0 * h))];
         if !self.closed && u > h {
             let [c, c1] = at(h);
             return [c + c1 * (u - h), c1, 0.0];

@@ -1,8 +1,8 @@
 //! Every kind that is made from its residual and gradient: its rows against differences, and against the same typed as an expression.
 
 use super::{
-    Anchor, Constraint, Curve, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation,
-    Rows,
+    Anchor, Constraint, Curve, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane,
+    Relation, Rows,
 };
 use crate::expression::{Expression, Purpose, Scope};
 use crate::point::Motion;
@@ -20,7 +20,8 @@ fn dimension(d: usize) -> Dimension {
 
 fn expression(text: &str, purpose: Purpose, d: usize) -> Expression {
     let particle = |name: &str| ["a", "b", "c", "p"].iter().position(|known| *known == name).map(ParticleId);
-    Expression::parse(text, &Scope::new(purpose, dimension(d), &particle)).unwrap_or_else(|error| panic!("{text}: {error}"))
+    Expression::parse(text, &Scope::new(purpose, dimension(d), &particle))
+        .unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
 fn schedule(text: &str) -> Schedule {
@@ -52,12 +53,7 @@ fn cases() -> Vec<Case> {
             vec!["0.25*a.x + 0.5*b.x + 0.25*p.x - sin(t)", "0.25*a.y + 0.5*b.y + 0.25*p.y - 2*t"],
         ),
         ("driven", 3, Relation::driven(P, point()).into(), vec!["p.x - sin(t)", "p.y - 2*t", "p.z - 0.3 + t^2"]),
-        (
-            "direction",
-            2,
-            Direction { a: A, b: B, along: turning() }.into(),
-            vec!["cross([cos(3*t), sin(3*t)], b - a)"],
-        ),
+        ("direction", 2, Direction { a: A, b: B, along: turning() }.into(), vec!["cross([cos(3*t), sin(3*t)], b - a)"]),
         ("direction in space", 3, Direction { a: A, b: B, along: turning() }.into(), vec![]),
         (
             "on a driven line",
@@ -65,7 +61,12 @@ fn cases() -> Vec<Case> {
             OnLine { particle: P, line: Line::Through(point(), turning()) }.into(),
             vec!["cross([cos(3*t), sin(3*t)], p - [sin(t), 2*t])"],
         ),
-        ("on a driven line in space", 3, OnLine { particle: P, line: Line::Through(point(), turning()) }.into(), vec![]),
+        (
+            "on a driven line in space",
+            3,
+            OnLine { particle: P, line: Line::Through(point(), turning()) }.into(),
+            vec![],
+        ),
         ("on a line of particles", 2, OnLine::through(P, A, B).into(), vec!["cross(b - a, p - a)/dist(a, b)"]),
         ("on a line of particles in space", 3, OnLine::through(P, A, B).into(), vec![]),
         (
@@ -95,7 +96,12 @@ fn cases() -> Vec<Case> {
             OnCircle::new(P, A, [1.0, 2.0, 2.0], radius()).into(),
             vec!["dot([1, 2, 2], p - a)/3", "dist(p, a) - 1 - 0.1*sin(5*t)"],
         ),
-        ("on a curve", 2, OnCurve { particle: P, curve: Curve::parametric(wave.to_vec(), -3.0, 3.0).unwrap() }.into(), vec![]),
+        (
+            "on a curve",
+            2,
+            OnCurve { particle: P, curve: Curve::parametric(wave.to_vec(), -3.0, 3.0).unwrap() }.into(),
+            vec![],
+        ),
     ]
 }
 
