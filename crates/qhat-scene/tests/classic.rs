@@ -50,6 +50,7 @@ impl Source<'_> {
                         (J[a], J[b]) = (2.0 * (q[a] - q[b]), -2.0 * (q[a] - q[b]));
                         (Jd[a], Jd[b]) = (2.0 * (qd[a] - qd[b]), -2.0 * (qd[a] - qd[b]));
                     }
+                    other => panic!("the source has no {other:?}"),
                 }
             }
             if let Constraint::Distance(rod) = &named.constraint {

@@ -184,7 +184,7 @@ impl Shape {
             let inside = (s.min(bound)..=s.max(bound)).contains(&newton);
             let next = if inside { newton } else { 0.5 * (s + bound) };
             // Newton's method squares its error: what is left of 1e-8 is roundoff. A number that is none ends it, too.
-            let done = !((next - s).abs() > 1e-8 * span);
+            let done = next.is_nan() || (next - s).abs() <= 1e-8 * span;
             s = next;
             if done {
                 break;
