@@ -86,7 +86,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 41] = [
+const BETWEEN_KEYS: [&str; 56] = [
     "there is no ",
     "is given twice",
     "is given to two",
@@ -128,6 +128,21 @@ const BETWEEN_KEYS: [&str; 41] = [
     "turn one of them round",
     "from one particle to another",
     "may depend on nothing but t",
+    "is given by `",
+    "needs a `range`",
+    "needs an `axis`",
+    "can have one weight",
+    "a weight of 0",
+    "must not be zero",
+    "but goes from",
+    "of a curve are at one place",
+    "a curve needs",
+    "gives no direction",
+    "is rigid and held in the form",
+    "has no axis in two",
+    "no plane to be on",
+    "is not finite everywhere",
+    "needs a radius",
 ];
 
 #[test]

@@ -64,8 +64,9 @@ mod threads;
 pub use body::Body;
 pub use cluster::rigid_rods;
 pub use constraint::{
-    Angle, Area, Barrier, Constraint, Distance, DistanceForm, ExpressionConstraint, Formulation, Gears, Jacobian,
-    Lengths, Limits, Nail, NailForm, Relation, Surface, Volume,
+    Anchor, Angle, Area, Barrier, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint,
+    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Nail, NailForm, OnCircle, OnCurve,
+    OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
 };
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};

@@ -140,6 +140,14 @@ pub(crate) fn scaled<N: Number, const D: usize>(s: N, a: [N; D]) -> [N; D] {
     a.map(|a| s * a)
 }
 
+/// a × b, in three dimensions.
+pub(crate) fn cross<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i] * b[j] - a[j] * b[i]
+    })
+}
+
 /// |a|.
 pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
     dot(a, a).sqrt()
@@ -148,11 +156,6 @@ pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
 /// A vector of the plane in space, with z = 0; one of space as it is.
 pub(crate) fn raised<N: Number, const D: usize>(a: [N; D]) -> [N; 3] {
     std::array::from_fn(|k| if k < D { a[k] } else { N::constant(0.0) })
-}
-
-/// a × b.
-pub(crate) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]

@@ -369,6 +369,14 @@ impl SystemBuilder {
         ParticleId(self.particles.len() - 1)
     }
 
+    /// m [kg] of a particle that was added.
+    ///
+    /// # Panics
+    /// Where there is none with this id.
+    pub fn mass(&self, particle: ParticleId) -> f64 {
+        self.particles[particle.0].mass
+    }
+
     /// Adds a constraint under a name that reports will use.
     pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> &mut Self {
         self.constraints.push((name.into(), constraint.into()));
@@ -455,8 +463,8 @@ impl SystemBuilder {
             None => Ok(()),
         };
         for (name, constraint) in &self.constraints {
-            let outcome = exists(constraint.particles()).and_then(|()| fits(constraint.dimension()));
-            let outcome = outcome.and_then(|()| constraint.check());
+            let outcome = exists(constraint.particles()).and_then(|()| constraint.check());
+            let outcome = outcome.and_then(|()| constraint.fits(self.dimension.number()));
             outcome.map_err(|message| BuildError::Constraint { name: name.clone(), message })?;
         }
         for (index, force) in self.forces.iter().enumerate() {

@@ -226,7 +226,7 @@ fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, St
         let constraint: Constraint = match named.constraint.clone() {
             Constraint::Distance(rod) => Distance { a: new(rod.a), b: new(rod.b), ..rod }.into(),
             Constraint::Nail(nail) => Nail { particle: new(nail.particle), ..nail }.into(),
-            other => panic!("random webs have rods and nails only: {other:?}"),
+            other => panic!("these systems have no {other:?}"),
         };
         builder.constraint(named.name.clone(), constraint);
     }
@@ -315,7 +315,7 @@ fn sparse_equals_dense() {
             let constraint: Constraint = match named.constraint.clone() {
                 Constraint::Distance(rod) => Distance { a: shift(rod.a), b: shift(rod.b), ..rod }.into(),
                 Constraint::Nail(nail) => Nail { particle: shift(nail.particle), ..nail }.into(),
-                other => panic!("chains have rods and nails only: {other:?}"),
+                other => panic!("these systems have no {other:?}"),
             };
             builder.constraint(format!("{} of {copy}", named.name), constraint);
         }

@@ -1,9 +1,9 @@
 //! `[[constraints]]` and `[[springs]]`: what connects particles.
 
 use super::Assembly;
-use crate::model::{Constraint, Distance, Id, Nail, Name, Spring};
+use crate::model::{Constraint, Distance, DistanceForm, Driven, Id, Nail, NailForm, Name, Spring};
 use crate::tree::Node;
-use qhat::ParticleId;
+use qhat::{ParticleId, Schedule};
 
 impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
@@ -45,14 +45,25 @@ impl Assembly<'_, '_, '_> {
                 Constraint::Rigid(rigid) => self.add_rigid(rigid, place),
                 Constraint::Area(area) => self.add_area(area, place),
                 Constraint::Volume(volume) => self.add_volume(volume, place),
+                Constraint::Coincidence(it) => self.add_coincidence(it, place),
+                Constraint::Midpoint(it) => self.add_midpoint(it, place),
+                Constraint::CenterOfMass(it) => self.add_center_of_mass(it, place),
+                Constraint::Relation(it) => self.add_relation(it, place),
+                Constraint::Direction(it) => self.add_direction(it, place),
+                Constraint::Line(it) => self.add_line(it, place),
+                Constraint::Plane(it) => self.add_plane(it, place),
+                Constraint::Sphere(it) => self.add_sphere(it, place),
+                Constraint::Circle(it) => self.add_circle(it, place),
+                Constraint::Curve(it) => self.add_curve(it, place),
             };
         }
     }
 
     fn add_distance(&mut self, distance: &Distance, place: &Node) -> Option<()> {
         let (a, b) = self.pair(&distance.between, place)?;
-        let length = match distance.length {
-            Some(length) => length,
+        let length = match &distance.length {
+            Some(Driven::Number(length)) => *length,
+            Some(driven) => return self.add_driven_rod(distance, driven, (a, b), place),
             None => {
                 let length = self.distance(a.0, b.0);
                 let [one, other] = distance.between.each_ref().map(|Id(id)| self.report.quoted(id));
@@ -81,20 +92,46 @@ impl Assembly<'_, '_, '_> {
         Some(())
     }
 
+    /// A rod whose length follows the time.
+    fn add_driven_rod(
+        &mut self,
+        distance: &Distance,
+        length: &Driven,
+        (a, b): (ParticleId, ParticleId),
+        place: &Node,
+    ) -> Option<()> {
+        if distance.compliance > 0.0 || distance.form != DistanceForm::Length {
+            let message = "a rod whose length is an expression is rigid and held in the form `length`";
+            let help = "leave out `form`, `compliance` and `damping`, or give `length` as a number".to_owned();
+            self.report.error(place.key("length").span.clone(), message, Some(help));
+            return None;
+        }
+        let radius = self.schedule(length, place.key("length"))?;
+        let [Id(one), Id(other)] = &distance.between;
+        let name = match &distance.id {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name(format!("{one}-{other}")),
+        };
+        self.builder.constraint(name, qhat::OnSphere::new(a, b, radius));
+        Some(())
+    }
+
     fn add_nail(&mut self, nail: &Nail, place: &Node) -> Option<()> {
         let particle = self.particle(&nail.particle, place.key("particle"))?;
-        let at = match &nail.at {
-            Some(at) => at.padded(),
-            None => {
-                let start = &self.positions[particle.0 * self.dimension..][..self.dimension];
-                std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
-            }
-        };
+        let start = self.start(particle);
+        let point = self.schedules_or(nail.at.as_ref(), place.key("at"), start)?;
         let name = match &nail.id {
             Some(Name(name)) => name.clone(),
             None => self.free_constraint_name(format!("nail({})", nail.particle.0)),
         };
-        self.builder.constraint(name, qhat::Nail { particle, at, form: nail.form.into() });
+        if let [Schedule::Constant(x), Schedule::Constant(y), Schedule::Constant(z)] = point {
+            self.builder.constraint(name, qhat::Nail { particle, at: [x, y, z], form: nail.form.into() });
+        } else if nail.form == NailForm::Vector {
+            self.builder.constraint(name, qhat::Relation::driven(particle, point));
+        } else {
+            let message = "a nail whose point is an expression is held in the form `vector`";
+            self.report.error(place.key("form").span.clone(), message, Some("leave out `form`".into()));
+        }
         Some(())
     }
 

@@ -1,22 +1,22 @@
-//! Numbers that may change with time, and what they are measured as where they are left out.
+//! Constraints whose number, which may follow the time, is measured at the start where it is left out.
 
 use super::Assembly;
-use crate::model::Drive;
+use crate::model::Driven;
 use crate::tree::Node;
-use qhat::{Constraint, Dimension, Expression, Purpose, Schedule, Scope};
+use qhat::{Constraint, Dimension, Schedule};
 
 impl Assembly<'_, '_, '_> {
     /// Adds a constraint made for what is given, or for what it has at the start.
     pub(super) fn add_driven(
         &mut self,
         name: String,
-        given: &Option<Drive>,
+        given: &Option<Driven>,
         place: (&Node, &str),
         make: impl Fn(Schedule) -> Constraint,
     ) -> Option<()> {
         let (table, key) = place;
         let schedule = match given {
-            Some(drive) => self.schedule(drive, table.key(key))?,
+            Some(driven) => self.schedule(driven, table.key(key))?,
             None => {
                 let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions);
                 let [measured] = at_start[..] else { unreachable!("what is driven has one row") };
@@ -33,22 +33,6 @@ impl Assembly<'_, '_, '_> {
         self.places.insert(name.clone(), table.span.clone());
         self.builder.constraint(name, make(schedule));
         Some(())
-    }
-
-    /// A number, or an expression of t alone.
-    fn schedule(&mut self, drive: &Drive, place: &Node) -> Option<Schedule> {
-        let text = match drive {
-            Drive::Number(number) => return Some((*number).into()),
-            Drive::Text(text) => text,
-        };
-        let particle = |name: &str| self.ids.find(name);
-        match Expression::parse(text, &Scope::new(Purpose::Time, self.dimension_of_system(), &particle)) {
-            Ok(function) => Some(function.into()),
-            Err(error) => {
-                self.report.error(place.span.clone(), error.message, error.help);
-                None
-            }
-        }
     }
 
     pub(super) fn dimension_of_system(&self) -> Dimension {

@@ -6,7 +6,7 @@ use crate::report::Report;
 use crate::suggest::nearest;
 use crate::tree::{Node, Value};
 use qhat::expression::check_parameter;
-use qhat::{Dimension, Expression, Purpose, Scope, State};
+use qhat::{Expression, Purpose, Scope, State};
 use std::ops::Range;
 
 /// A force or potential that has yet to show that it is a number where the scene starts.
@@ -96,7 +96,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// The expression of a text whose value stands at `place`.
-    fn expression(
+    pub(super) fn expression(
         &mut self,
         text: &str,
         purpose: Purpose,
@@ -110,7 +110,7 @@ impl Assembly<'_, '_, '_> {
         };
         let scope = Scope {
             purpose,
-            dimension: if self.dimension == 2 { Dimension::Two } else { Dimension::Three },
+            dimension: self.dimension_of_system(),
             particle: &|name| ids.find(name),
             parameter: &|name| parameters.get(name).copied(),
             suggest: &suggest,

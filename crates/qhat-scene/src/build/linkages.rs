@@ -190,10 +190,4 @@ impl Assembly<'_, '_, '_> {
         let found: Vec<_> = ids.iter().enumerate().map(|(i, id)| self.particle(id, place.item(i))).collect();
         found.into_iter().collect()
     }
-
-    /// Where a particle starts [m], with z = 0 in two dimensions.
-    fn start(&self, particle: ParticleId) -> [f64; 3] {
-        let x = &self.positions[particle.0 * self.dimension..][..self.dimension];
-        std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
-    }
 }

@@ -3,11 +3,13 @@
 
 mod bodies;
 mod connections;
+mod driven;
 mod drives;
 mod expectations;
 mod expressions;
 mod generated;
 mod ids;
+mod kinds;
 mod linkages;
 mod loads;
 mod particles;

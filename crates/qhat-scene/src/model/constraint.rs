@@ -1,8 +1,9 @@
 //! `[[constraints]]` and `[[springs]]`.
 
 use super::content::{Area, Volume};
+use super::kinds::{CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere};
 use super::linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
-use super::{ExpressionConstraint, Id, Name, Vector};
+use super::{Driven, DrivenVector, ExpressionConstraint, Id, Name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,22 +22,42 @@ pub(crate) enum Constraint {
     Rigid(Rigid),
     Area(Area),
     Volume(Volume),
+    Coincidence(Coincidence),
+    Midpoint(Midpoint),
+    CenterOfMass(CenterOfMass),
+    Relation(Relation),
+    Direction(Direction),
+    Line(Line),
+    Plane(Plane),
+    Sphere(Sphere),
+    Circle(Circle),
+    Curve(Curve),
 }
 
 impl Constraint {
     /// The name that the file gives it.
     pub(crate) fn id(&self) -> Option<&Name> {
         match self {
-            Constraint::Distance(Distance { id, .. })
-            | Constraint::Nail(Nail { id, .. })
-            | Constraint::Expression(ExpressionConstraint { id, .. })
-            | Constraint::Pulley(Pulley { id, .. })
-            | Constraint::LengthRatio(LengthRatio { id, .. })
-            | Constraint::Angle(Angle { id, .. })
-            | Constraint::Gears(Gears { id, .. })
-            | Constraint::Rack(Rack { id, .. })
-            | Constraint::Area(Area { id, .. })
-            | Constraint::Volume(Volume { id, .. }) => id.as_ref(),
+            Constraint::Distance(it) => it.id.as_ref(),
+            Constraint::Nail(it) => it.id.as_ref(),
+            Constraint::Coincidence(it) => it.id.as_ref(),
+            Constraint::Midpoint(it) => it.id.as_ref(),
+            Constraint::CenterOfMass(it) => it.id.as_ref(),
+            Constraint::Relation(it) => it.id.as_ref(),
+            Constraint::Direction(it) => it.id.as_ref(),
+            Constraint::Line(it) => it.id.as_ref(),
+            Constraint::Plane(it) => it.id.as_ref(),
+            Constraint::Sphere(it) => it.id.as_ref(),
+            Constraint::Circle(it) => it.id.as_ref(),
+            Constraint::Curve(it) => it.id.as_ref(),
+            Constraint::Expression(it) => it.id.as_ref(),
+            Constraint::Pulley(it) => it.id.as_ref(),
+            Constraint::LengthRatio(it) => it.id.as_ref(),
+            Constraint::Angle(it) => it.id.as_ref(),
+            Constraint::Gears(it) => it.id.as_ref(),
+            Constraint::Rack(it) => it.id.as_ref(),
+            Constraint::Area(it) => it.id.as_ref(),
+            Constraint::Volume(it) => it.id.as_ref(),
             Constraint::Rigid(_) => None,
         }
     }
@@ -51,10 +72,10 @@ pub(crate) struct Distance {
     pub(crate) id: Option<Name>,
     /// The ids of the two particles at its ends.
     pub(crate) between: [Id; 2],
-    /// Its length [m], above 0; the distance at the start if left out.
+    /// Its length [m], a number above 0 or an expression of t; the distance at the start if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub(crate) length: Option<f64>,
+    pub(crate) length: Option<Driven>,
     /// The function that is held at zero: the length's error, or that of its square (the classic one).
     #[serde(default)]
     pub(crate) form: DistanceForm,
@@ -97,9 +118,9 @@ pub(crate) struct Nail {
     pub(crate) id: Option<Name>,
     /// The id of the particle it holds.
     pub(crate) particle: Id,
-    /// The point where it is [m]; where the particle starts if left out.
+    /// The point where it is [m], numbers or expressions of t; where the particle starts if left out.
     #[serde(default)]
-    pub(crate) at: Option<Vector>,
+    pub(crate) at: Option<DrivenVector>,
     /// The function that is held at zero: the offset itself, or its square (the classic one).
     #[serde(default)]
     pub(crate) form: NailForm,

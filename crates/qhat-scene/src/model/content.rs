@@ -1,6 +1,6 @@
 //! `[[constraints]]` that hold what a shape contains.
 
-use super::{Drive, Id, Name};
+use super::{Driven, Id, Name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub(crate) struct Area {
     pub(crate) corners: Vec<Id>,
     /// The area [m²], positive where the corners run counterclockwise, or an expression of t; the area at the start if left out.
     #[serde(default)]
-    pub(crate) area: Option<Drive>,
+    pub(crate) area: Option<Driven>,
 }
 
 /// A closed surface that keeps its volume, in space.
@@ -31,5 +31,5 @@ pub(crate) struct Volume {
     pub(crate) faces: Vec<[Id; 3]>,
     /// The volume [m³], or an expression of t; the volume at the start if left out.
     #[serde(default)]
-    pub(crate) volume: Option<Drive>,
+    pub(crate) volume: Option<Driven>,
 }

@@ -1,6 +1,6 @@
 //! `[[constraints]]` of mechanisms: pulleys, lengths in a ratio, angles and motors, gears, racks, rigid clusters.
 
-use super::{Drive, Id, Name, Vector};
+use super::{Driven, Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub(crate) struct Pulley {
     /// The length of the rope [m], above 0, or an expression of t; its length at the start if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub(crate) length: Option<Drive>,
+    pub(crate) length: Option<Driven>,
 }
 
 /// Two distances in a ratio.
@@ -57,7 +57,7 @@ pub(crate) struct Angle {
     pub(crate) direction: Option<Vector>,
     /// The angle [rad], counterclockwise in the plane and between 0 and π in space, or an expression of t; the angle at the start if left out.
     #[serde(default)]
-    pub(crate) angle: Option<Drive>,
+    pub(crate) angle: Option<Driven>,
 }
 
 /// Two wheels that mesh, in the plane.
@@ -74,7 +74,7 @@ pub(crate) struct Gears {
     pub(crate) teeth: [i32; 2],
     /// Where they mesh [rad], or an expression of t; as at the start if left out.
     #[serde(default)]
-    pub(crate) angle: Option<Drive>,
+    pub(crate) angle: Option<Driven>,
 }
 
 /// A rack and its pinion, in the plane.
@@ -95,7 +95,7 @@ pub(crate) struct Rack {
     pub(crate) radius: f64,
     /// Where they mesh [rad], or an expression of t; as at the start if left out.
     #[serde(default)]
-    pub(crate) angle: Option<Drive>,
+    pub(crate) angle: Option<Driven>,
 }
 
 /// Particles that keep all their distances.

@@ -4,18 +4,19 @@
 pub(crate) mod body;
 mod constraint;
 mod content;
-mod drive;
+mod driven;
 mod expect;
 mod expression;
 pub(crate) mod generate;
+pub(crate) mod kinds;
 mod linkage;
 pub(crate) mod load;
 mod step;
 mod value;
 
-pub(crate) use constraint::{Constraint, Distance, Nail, Spring};
+pub(crate) use constraint::{Constraint, Distance, DistanceForm, Nail, NailForm, Spring};
 pub(crate) use content::{Area, Volume};
-pub(crate) use drive::Drive;
+pub(crate) use driven::{Driven, DrivenVector};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
 pub(crate) use generate::Generate;

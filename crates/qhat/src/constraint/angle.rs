@@ -55,8 +55,8 @@ impl Smooth for Angle {
         1
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.arms.particles().to_vec()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.arms.particles().get(i).copied()
     }
 
     fn row<N: Number, const D: usize>(

@@ -28,12 +28,12 @@ impl Smooth for Area {
         1
     }
 
-    fn dimension(&self) -> Option<usize> {
-        Some(2)
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        super::only_in(2, dimension)
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.corners.clone()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.corners.get(i).copied()
     }
 
     fn row<N: Number, const D: usize>(

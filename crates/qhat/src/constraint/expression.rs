@@ -117,8 +117,8 @@ impl Holds for ExpressionConstraint {
         1
     }
 
-    fn dimension(&self) -> Option<usize> {
-        Some(self.expression.dimension())
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        super::only_in(self.expression.dimension(), dimension)
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -91,12 +91,12 @@ impl Smooth for Gears {
         1
     }
 
-    fn dimension(&self) -> Option<usize> {
-        Some(2)
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        super::only_in(2, dimension)
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.arms.particles().to_vec()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.arms.particles().get(i).copied()
     }
 
     fn row<N: Number, const D: usize>(

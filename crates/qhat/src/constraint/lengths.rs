@@ -51,8 +51,8 @@ impl Smooth for Lengths {
         1
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.segments.particles().to_vec()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.segments.particles().get(i).copied()
     }
 
     fn row<N: Number, const D: usize>(

@@ -3,30 +3,50 @@
 //! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
 //! list below.
 
+mod anchor;
 mod angle;
 mod area;
 mod arms;
 mod barrier;
+mod curve;
+mod direction;
 mod distance;
 mod expression;
 mod gears;
 mod lengths;
 mod limits;
+mod moment;
 mod nail;
+mod on_circle;
+mod on_curve;
+mod on_line;
+mod on_plane;
+mod on_sphere;
 mod relation;
 mod rows;
 mod smooth;
+mod spline;
+#[cfg(test)]
+mod tests;
 mod volume;
 
+pub use anchor::{Anchor, DrivenPoint};
 pub use angle::Angle;
 pub use area::Area;
 pub use barrier::{Barrier, Surface};
+pub use curve::Curve;
+pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
 pub use expression::ExpressionConstraint;
 pub use gears::Gears;
 pub use lengths::Lengths;
 pub use limits::Limits;
 pub use nail::{Nail, NailForm};
+pub use on_circle::OnCircle;
+pub use on_curve::OnCurve;
+pub use on_line::{Line, OnLine};
+pub use on_plane::{OnPlane, Plane};
+pub use on_sphere::OnSphere;
 pub use relation::Relation;
 pub use rows::Jacobian;
 pub(crate) use rows::{Layout, RowWriter, Rows};
@@ -46,11 +66,6 @@ pub(crate) trait Holds {
     /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
     fn is_vector(&self) -> bool {
         false
-    }
-
-    /// The only number of dimensions it fits, if there is one.
-    fn dimension(&self) -> Option<usize> {
-        None
     }
 
     /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
@@ -103,6 +118,11 @@ pub(crate) trait Holds {
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
+    /// Why it cannot be in d dimensions, in words.
+    fn fits(&self, _dimension: usize) -> Result<(), String> {
+        Ok(())
+    }
+
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
 }
@@ -116,6 +136,15 @@ pub(crate) struct ContactRows {
     pub(crate) restitution: f64,
     /// μ.
     pub(crate) friction: f64,
+}
+
+/// Refuses any number of dimensions but one.
+fn only_in(wanted: usize, dimension: usize) -> Result<(), String> {
+    if wanted == dimension {
+        Ok(())
+    } else {
+        Err(format!("it is written for {wanted} dimensions, but the system has {dimension}"))
+    }
 }
 
 fn check_restitution(restitution: f64) -> Result<(), String> {
@@ -182,9 +211,6 @@ macro_rules! constraints {
             fn is_vector(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.is_vector(),)* }
             }
-            fn dimension(&self) -> Option<usize> {
-                match self { $(Constraint::$kind(constraint) => constraint.dimension(),)* }
-            }
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Constraint::$kind(constraint) => constraint.particles(),)* }
             }
@@ -223,6 +249,9 @@ macro_rules! constraints {
             }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
+            }
+            fn fits(&self, dimension: usize) -> Result<(), String> {
+                match self { $(Constraint::$kind(constraint) => constraint.fits(dimension),)* }
             }
             fn check(&self) -> Result<(), String> {
                 match self { $(Constraint::$kind(constraint) => constraint.check(),)* }
@@ -275,4 +304,16 @@ constraints! {
     Area,
     /// A closed surface that keeps its volume.
     Volume,
+    /// Two particles whose connecting line has a given direction.
+    Direction,
+    /// A particle on a line.
+    OnLine,
+    /// A particle on a plane.
+    OnPlane,
+    /// A particle at a distance from a point or another particle that may be driven.
+    OnSphere,
+    /// A particle on a circle in space.
+    OnCircle,
+    /// A particle on a smooth curve: a bead on a wire.
+    OnCurve,
 }

@@ -32,6 +32,19 @@ impl Relation {
         Relation::homogeneous([(m, 1.0), (a, -0.5), (b, -0.5)])
     }
 
+    /// The centre of mass of particles with masses m_i [kg] at p(t): w_i = m_i/Σ m.
+    pub fn center_of_mass(masses: impl Into<Vec<(ParticleId, f64)>>, point: [Schedule; 3]) -> Self {
+        let mut terms = masses.into();
+        let sum: f64 = terms.iter().map(|(_, mass)| mass).sum();
+        terms.iter_mut().for_each(|(_, weight)| *weight /= sum);
+        Relation { terms, point }
+    }
+
+    /// A particle at a point that may be driven: x = p(t).
+    pub fn driven(particle: ParticleId, point: [Schedule; 3]) -> Self {
+        Relation { terms: vec![(particle, 1.0)], point }
+    }
+
     /// Σ w_i x_i = 0.
     pub fn homogeneous(terms: impl Into<Vec<(ParticleId, f64)>>) -> Self {
         Relation { terms: terms.into(), point: [0.0; 3].map(Schedule::Constant) }
@@ -47,8 +60,8 @@ impl Smooth for Relation {
         true
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.terms.iter().map(|&(particle, _)| particle).collect()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.terms.get(i).map(|&(particle, _)| particle)
     }
 
     fn row<N: Number, const D: usize>(

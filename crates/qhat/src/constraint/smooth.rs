@@ -27,15 +27,10 @@ pub(crate) trait Smooth: Clone {
         false
     }
 
-    /// The only number of dimensions it fits, if there is one.
-    fn dimension(&self) -> Option<usize> {
-        None
-    }
+    /// The i-th of the particles it names, each once; `None` after the last.
+    fn particle(&self, i: usize) -> Option<ParticleId>;
 
-    /// The particles it names, each once.
-    fn particles(&self) -> Vec<ParticleId>;
-
-    /// Hands ∂C/∂x of one row to `gradient`, particle after particle in the order of `particles`, and returns C and C_t. `x` tells
+    /// Hands ∂C/∂x of one row to `gradient`, particle after particle in the order of `particle`, and returns C and C_t. `x` tells
     /// where the i-th of its particles is.
     fn row<N: Number, const D: usize>(
         &self,
@@ -48,6 +43,11 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
+    /// Why it cannot be in d dimensions, in words.
+    fn fits(&self, _dimension: usize) -> Result<(), String> {
+        Ok(())
+    }
+
     /// What is wrong with its numbers, in words.
     fn check(&self) -> Result<(), String>;
 }
@@ -56,14 +56,14 @@ pub(crate) trait Smooth: Clone {
 fn second_derivatives<S: Smooth, const D: usize>(
     constraint: &S,
     row: usize,
-    particles: &[ParticleId],
     motion: Motion<'_, D>,
     visit: &mut impl FnMut(usize, usize, usize, [f64; D]),
 ) {
-    for j in 0..particles.len() {
+    let particle = |i| constraint.particle(i).expect("one of its particles");
+    for j in (0..).take_while(|&j| constraint.particle(j).is_some()) {
         for k in 0..D {
             let x = |i: usize| {
-                let mut place = motion.x(particles[i]).map(Dual::constant);
+                let mut place = motion.x(particle(i)).map(Dual::constant);
                 if i == j {
                     place[k].slope = 1.0;
                 }
@@ -87,12 +87,8 @@ impl<S: Smooth> Holds for S {
         Smooth::is_vector(self)
     }
 
-    fn dimension(&self) -> Option<usize> {
-        Smooth::dimension(self)
-    }
-
     fn particles(&self) -> Vec<ParticleId> {
-        Smooth::particles(self)
+        (0..).map_while(|i| self.particle(i)).collect()
     }
 
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
@@ -122,12 +118,11 @@ impl<S: Smooth> Holds for S {
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
-        let particles = Smooth::particles(self);
         let mut largest = 0.0_f64;
         for row in 0..Smooth::row_count(self, D) {
             // The largest sum over a column bounds the norm.
             let (mut sum, mut last) = (0.0, (0, 0));
-            second_derivatives(self, row, &particles, motion, &mut |j, k, _, column| {
+            second_derivatives(self, row, motion, &mut |j, k, _, column| {
                 if (j, k) != last {
                     (sum, last) = (0.0, (j, k));
                 }
@@ -144,9 +139,8 @@ impl<S: Smooth> Holds for S {
         lambda: &[f64],
         visit: &mut impl FnMut(usize, usize, Stiffness<D>),
     ) {
-        let particles = Smooth::particles(self);
         for (row, multiplier) in lambda.iter().enumerate() {
-            second_derivatives(self, row, &particles, motion, &mut |j, k, i, column| {
+            second_derivatives(self, row, motion, &mut |j, k, i, column| {
                 if i <= j {
                     let mut block: Block<D> = zero();
                     for (line, entry) in block.iter_mut().zip(column) {
@@ -160,6 +154,10 @@ impl<S: Smooth> Holds for S {
 
     fn formulated(&self, _: Formulation) -> Self {
         self.clone()
+    }
+
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        Smooth::fits(self, dimension)
     }
 
     fn check(&self) -> Result<(), String> {

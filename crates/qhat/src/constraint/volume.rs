@@ -57,12 +57,12 @@ impl Smooth for Volume {
         1
     }
 
-    fn dimension(&self) -> Option<usize> {
-        Some(3)
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        super::only_in(3, dimension)
     }
 
-    fn particles(&self) -> Vec<ParticleId> {
-        self.particles.clone()
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.particles.get(i).copied()
     }
 
     fn row<N: Number, const D: usize>(

@@ -9,13 +9,15 @@ use super::tape::Instruction;
 use crate::system::{Dimension, ParticleId};
 use std::ops::Range;
 
-/// Names of the language itself.
-const OWN: [&str; 3] = ["t", CONSTANTS[0].0, CONSTANTS[1].0];
-
 impl<'a> Lowering<'a> {
+    /// Names of the language itself.
+    fn own(&self) -> [&'static str; 3] {
+        [self.scope.purpose.variable(), CONSTANTS[0].0, CONSTANTS[1].0]
+    }
+
     /// Whether a name without coordinate stands for something.
     pub(super) fn has_meaning(&self, name: &str) -> bool {
-        OWN.contains(&name) || (self.scope.particle)(name).is_some() || (self.scope.parameter)(name).is_some()
+        self.own().contains(&name) || (self.scope.particle)(name).is_some() || (self.scope.parameter)(name).is_some()
     }
 
     /// The value of the name at `span`.
@@ -27,7 +29,7 @@ impl<'a> Lowering<'a> {
             None => (word, None),
         };
         if member.is_none() {
-            if word == "t" {
+            if word == self.scope.purpose.variable() {
                 return self.push(Instruction::Time, span).map(Value::Number);
             }
             if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == word) {
@@ -51,6 +53,10 @@ impl<'a> Lowering<'a> {
             (None, Some(_), Some(member)) => {
                 let message = format!("{} is a parameter, a number: it has no `.{}`", quoted(base), cut(member));
                 Err(ExpressionError::new(span.clone(), message).with_help(format!("write {}", quoted(base))))
+            }
+            (Some(_), _, _) if self.scope.purpose == Purpose::Curve => {
+                let message = format!("{} is a particle, but a curve depends on its parameter alone", quoted(base));
+                Err(ExpressionError::new(span.clone(), message).with_help("use `s`, parameters and numbers"))
             }
             (Some(_), _, _) if self.scope.purpose == Purpose::Time => {
                 let message = format!("{} is a particle, but this number may depend on time alone", quoted(base));
@@ -94,8 +100,8 @@ impl<'a> Lowering<'a> {
                 "{name} is a velocity, but a constraint C(q, t) = 0 may hold positions and time only: the velocities it allows follow from it"
             ))
             .with_help("write what the positions must satisfy; to act on velocities, use a force")),
-            // A scope of time has refused the particle.
-            Purpose::Potential | Purpose::Time => Err(error(format!(
+            // Scopes of time and of a curve have refused the particle.
+            Purpose::Potential | Purpose::Time | Purpose::Curve => Err(error(format!(
                 "{name} is a velocity, but a potential energy depends on positions and time only"
             ))
             .with_help("write a force that depends on velocities as a force, one expression for each component")),
@@ -124,10 +130,11 @@ impl<'a> Lowering<'a> {
             let message = format!("`{base}` is a function: its arguments are missing");
             return ExpressionError { message, ..error }.with_help(format!("write `{}`", function.usage));
         }
-        match (self.scope.suggest)(base, &OWN) {
+        match (self.scope.suggest)(base, &self.own()) {
             Some(near) => error.with_help(format!("did you mean `{near}`?")),
             None => error.with_help(match self.scope.purpose {
                 Purpose::Time => "names are `t`, parameters, `pi` and `tau`",
+                Purpose::Curve => "names are `s`, the parameter of the curve, parameters, `pi` and `tau`",
                 _ => "names are particles, parameters, `t`, `pi` and `tau`",
             }),
         }

@@ -15,6 +15,15 @@ pub enum Purpose {
     Potential,
     /// A number that is driven: time alone.
     Time,
+    /// A component of a curve: its parameter alone, which is written `s` in the place of `t`.
+    Curve,
+}
+
+impl Purpose {
+    /// How the variable that is no coordinate is written.
+    pub(super) fn variable(self) -> &'static str {
+        if self == Purpose::Curve { "s" } else { "t" }
+    }
 }
 
 /// The names that an expression may use beside `t`, `pi` and `tau`.

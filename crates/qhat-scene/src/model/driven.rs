@@ -1,20 +1,20 @@
-//! A number that may change with time.
+//! Numbers that may follow the time: a number, or an expression of t as text.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A number, or the text of an expression of t.
+/// A number, or an expression of t.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Drive {
+pub(crate) enum Driven {
     Number(f64),
     Text(String),
 }
 
-impl JsonSchema for Drive {
+impl JsonSchema for Driven {
     fn schema_name() -> Cow<'static, str> {
-        "Drive".into()
+        "Driven".into()
     }
 
     fn inline_schema() -> bool {
@@ -25,3 +25,10 @@ impl JsonSchema for Drive {
         json_schema!({ "type": ["number", "string"] })
     }
 }
+
+/// One of them for each dimension.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(crate) struct DrivenVector(
+    #[schemars(length(min = 2, max = 3), extend("x-length" = "dimension"))] pub(crate) Vec<Driven>,
+);

@@ -1,0 +1,75 @@
+//! Anchor: what a constraint measures from, a point that may be driven or a particle.
+
+use crate::number::Number;
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A point or vector whose components may follow t; the third is ignored in two dimensions.
+pub type DrivenPoint = [Schedule; 3];
+
+/// A point, fixed or driven, or a particle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Anchor {
+    /// p(t) [m].
+    Point(DrivenPoint),
+    /// Where a particle is.
+    Particle(ParticleId),
+}
+
+impl From<ParticleId> for Anchor {
+    fn from(particle: ParticleId) -> Self {
+        Anchor::Particle(particle)
+    }
+}
+
+impl From<[f64; 3]> for Anchor {
+    fn from(point: [f64; 3]) -> Self {
+        Anchor::Point(still(point))
+    }
+}
+
+impl Anchor {
+    pub(super) fn particle(&self) -> Option<ParticleId> {
+        if let Anchor::Particle(particle) = self { Some(*particle) } else { None }
+    }
+
+    /// p and, of a point, ṗ; of a particle, `x`.
+    pub(super) fn at<N: Number, const D: usize>(&self, x: impl FnOnce() -> [N; D], t: N) -> ([N; D], [N; D]) {
+        match self {
+            Anchor::Point(point) => follow(point, t),
+            Anchor::Particle(_) => (x(), [N::constant(0.0); D]),
+        }
+    }
+
+    pub(super) fn check(&self, what: &str) -> Result<(), String> {
+        if let Anchor::Point(point) = self { check_point(point, what) } else { Ok(()) }
+    }
+}
+
+/// A point that stays.
+pub(super) fn still(point: [f64; 3]) -> DrivenPoint {
+    point.map(Schedule::Constant)
+}
+
+/// p and ṗ.
+pub(super) fn follow<N: Number, const D: usize>(point: &DrivenPoint, t: N) -> ([N; D], [N; D]) {
+    let components: [(N, N); D] = std::array::from_fn(|k| point[k].at(t));
+    (components.map(|(value, _)| value), components.map(|(_, rate)| rate))
+}
+
+pub(super) fn check_point(point: &DrivenPoint, what: &str) -> Result<(), String> {
+    point.iter().try_for_each(|component| component.check(what))
+}
+
+/// `Ok` if a vector gives a direction at the start in d dimensions.
+pub(super) fn check_direction(vector: &DrivenPoint, what: &str, dimension: usize) -> Result<(), String> {
+    let squares: f64 = vector[..dimension].iter().map(|component| component.value(0.0)).map(|x| x * x).sum();
+    if squares.is_normal() { Ok(()) } else { Err(format!("{what} must not be zero, nor too long or short to square")) }
+}
+
+/// `Ok` if all named particles are different.
+pub(super) fn check_different(particles: impl Iterator<Item = ParticleId>, what: &str) -> Result<(), String> {
+    let particles: Vec<_> = particles.collect();
+    let twice = (1..particles.len()).any(|i| particles[..i].contains(&particles[i]));
+    if twice { Err(format!("{what} needs different particles, but one is named twice")) } else { Ok(()) }
+}

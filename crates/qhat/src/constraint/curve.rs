@@ -1,0 +1,195 @@
+//! A smooth curve c(s), and the foot of a point on it: the parameter s* where it is nearest.
+//!
+//! ```text
+//! w = x − c(s),   g(s) = w·c' = 0,   −g' = c'·c' − w·c"
+//! ∂s*/∂x = c'/(c'·c' − w·c")
+//! ```
+//!
+//! s* is looked for from the nearest of 512 points of the curve, by Newton's method that is kept between the neighbours of that point:
+//! it depends on x alone, never on what was asked before, so a run gives the same bits wherever it starts from. Near a place where the
+//! curve comes close to itself or crosses itself the nearest branch is taken, and x cannot say which one it came along: a curve
+//! must keep off itself.
+//!
+//! Beyond 9/10 of the radius of curvature on the inner side −g' is held at c'·c'/10: there the foot is about to jump, and its derivative
+//! would be infinite. Where c' = 0, a cusp, the tangent is that of c" and the foot does not move.
+
+use super::spline::Spline;
+use crate::expression::Expression;
+use crate::number::Number;
+use crate::point::{Point, dot, minus};
+use std::sync::Arc;
+
+const SAMPLES: usize = 512;
+/// Newton's method takes about five; halving of intervals, which it falls back to, fifty.
+const ITERATIONS: usize = 60;
+
+/// A smooth curve. Cloning shares it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    shape: Arc<Shape>,
+}
+
+#[derive(Debug, PartialEq)]
+struct Shape {
+    form: Form,
+    from: f64,
+    to: f64,
+    samples: Vec<[f64; 3]>,
+}
+
+#[derive(Debug, PartialEq)]
+enum Form {
+    Expressions(Vec<Expression>),
+    Spline(Spline),
+}
+
+/// Where the foot of a point is.
+pub(super) struct Foot<N, const D: usize> {
+    /// x − c.
+    pub(super) w: [N; D],
+    /// c' (c" in a cusp).
+    pub(super) tangent: [N; D],
+    /// ∂s*/∂x.
+    pub(super) slope: [N; D],
+}
+
+impl Curve {
+    /// x(s), y(s) and in space z(s) [m] for s from one number to another: expressions for [`Purpose::Curve`](crate::Purpose::Curve).
+    /// Beyond its ends the curve goes on as they do.
+    ///
+    /// # Errors
+    /// Not two or three of them, one that depends on more than s, bounds in the wrong order, and where the curve is not finite.
+    pub fn parametric(components: Vec<Expression>, from: f64, to: f64) -> Result<Self, String> {
+        if !(2..=3).contains(&components.len()) {
+            return Err(format!("a curve has 2 or 3 components, not {}", components.len()));
+        }
+        if components.iter().any(|component| !component.particles().is_empty()) {
+            return Err("a curve may depend on nothing but s".into());
+        }
+        if !(from < to && (to - from).is_finite()) {
+            return Err(format!(
+                "the parameter of a curve must grow from its start to its end, but goes from {from} to {to}"
+            ));
+        }
+        Curve::new(Form::Expressions(components), from, to)
+    }
+
+    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. Beyond the ends of an open one it goes on straight.
+    ///
+    /// # Errors
+    /// Fewer than two points, or three of a closed one; two neighbours at one place; a number that is not finite.
+    pub fn through(points: &[[f64; 3]], closed: bool) -> Result<Self, String> {
+        let spline = Spline::new(points, closed)?;
+        let end = spline.end();
+        Curve::new(Form::Spline(spline), 0.0, end)
+    }
+
+    fn new(form: Form, from: f64, to: f64) -> Result<Self, String> {
+        let mut shape = Shape { form, from, to, samples: Vec::new() };
+        shape.samples = (0..=SAMPLES).map(|i| shape.at::<3>(shape.parameter(i)).map(|[c, _, _]| c)).collect();
+        if shape.samples.iter().flatten().any(|c| !c.is_finite()) {
+            return Err(format!("the curve is not finite everywhere from {from} to {to}"));
+        }
+        Ok(Curve { shape: Arc::new(shape) })
+    }
+
+    /// `Ok` if it can be in d dimensions.
+    pub(super) fn fits(&self, dimension: usize) -> Result<(), String> {
+        match &self.shape.form {
+            Form::Expressions(components) if components.len() != dimension => {
+                Err(format!("a curve in {dimension} dimensions has {dimension} components, not {}", components.len()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The point at a parameter [m]; z = 0 in two dimensions.
+    pub fn point(&self, s: f64) -> [f64; 3] {
+        self.shape.at::<3>(s).map(|[c, _, _]| c)
+    }
+
+    pub(super) fn foot<N: Number, const D: usize>(&self, x: [N; D]) -> Foot<N, D> {
+        let place = x.map(Number::value);
+        let at = self.shape.at::<D>(self.shape.foot(place));
+        let [c, c1, c2] = [0, 1, 2].map(|order| std::array::from_fn::<f64, D, _>(|k| at[k][order]));
+        let square = dot(c1, c1);
+        let moving = if square > 0.0 { 1.0 } else { 0.0 };
+        let way = if square > 0.0 { c1 } else { c2 };
+        let inner = dot(minus(place, c), c2);
+        let steepness = (square - inner).max(0.1 * square);
+        let velocity = x.map(Number::slope);
+        let rate = moving * dot(c1, velocity) / if square > 0.0 { steepness } else { 1.0 };
+        let tangent: [N; D] = std::array::from_fn(|k| N::of(way[k], moving * c2[k] * rate));
+        let w: [N; D] = std::array::from_fn(|k| x[k] - N::of(c[k], c1[k] * rate));
+        // (c'·c' − w·c")˙ without w·c‴, which is 0 on the curve.
+        let held = steepness > square - inner;
+        let turning = if held { 0.2 * dot(c1, c2) * rate } else { 3.0 * dot(c1, c2) * rate - dot(velocity, c2) };
+        let steepness = N::of(if square > 0.0 { steepness } else { 1.0 }, turning);
+        let slope = tangent.map(|component| component.times(moving) / steepness);
+        Foot { w, tangent, slope }
+    }
+}
+
+impl Shape {
+    fn parameter(&self, sample: usize) -> f64 {
+        self.from + (self.to - self.from) * (sample as f64 / SAMPLES as f64)
+    }
+
+    /// c, c' and c" of each component.
+    fn at<const D: usize>(&self, s: f64) -> [[f64; 3]; D] {
+        std::array::from_fn(|k| match &self.form {
+            Form::Expressions(components) => components.get(k).map_or([0.0; 3], |component| {
+                let jet = component.jet(&[], &[], s);
+                [jet.value, jet.first, jet.second]
+            }),
+            Form::Spline(spline) => spline.at(k, s),
+        })
+    }
+
+    /// s*.
+    fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
+        let away = |i: usize| {
+            let apart: Point<D> = std::array::from_fn(|k| x[k] - self.samples[i][k]);
+            dot(apart, apart)
+        };
+        let mut nearest = (0, away(0));
+        for i in 1..=SAMPLES {
+            let distance = away(i);
+            if distance < nearest.1 {
+                nearest = (i, distance);
+            }
+        }
+        let span = self.to - self.from;
+        let step = span / SAMPLES as f64;
+        let mut s = self.parameter(nearest.0);
+        // Beyond an end the foot may be anywhere.
+        let mut low = if nearest.0 == 0 { f64::NEG_INFINITY } else { s - step };
+        let mut high = if nearest.0 == SAMPLES { f64::INFINITY } else { s + step };
+        for _ in 0..ITERATIONS {
+            let at = self.at::<D>(s);
+            let [c, c1, c2] = [0, 1, 2].map(|order| std::array::from_fn::<f64, D, _>(|k| at[k][order]));
+            let w = minus(x, c);
+            let (g, steepness) = (dot(w, c1), dot(c1, c1) - dot(w, c2));
+            if g == 0.0 {
+                break;
+            }
+            let bound = if g > 0.0 {
+                low = s;
+                high
+            } else {
+                high = s;
+                low
+            };
+            let newton = if steepness > 0.0 { s + g / steepness } else { s + step.copysign(g) };
+            let inside = (s.min(bound)..=s.max(bound)).contains(&newton);
+            let next = if inside { newton } else { 0.5 * (s + bound) };
+            // Newton's method squares its error: what is left of 1e-8 is roundoff. A number that is none ends it, too.
+            let done = next.is_nan() || (next - s).abs() <= 1e-8 * span;
+            s = next;
+            if done {
+                break;
+            }
+        }
+        s
+    }
+}

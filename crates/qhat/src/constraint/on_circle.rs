@@ -1,0 +1,90 @@
+//! OnCircle: a particle on a circle in space, of radius r(t) about a point p(t) or another particle, across an axis.
+//!
+//! ```text
+//! d = x − p or x − x_p,   n = d/|d|
+//! C_0 = â · d,     J = âᵀ,    C_t = −â·ṗ               (on_plane.rs)
+//! C_1 = |d| − r,   J = nᵀ,    C_t = −n·ṗ − ṙ           (on_sphere.rs)
+//! ```
+//!
+//! Two rows [m], at right angles on the circle; λ are the forces along the axis and outwards [N]. Three dimensions only: in the plane a
+//! circle is OnSphere. Fails in the centre, as OnSphere does, and on the axis, where both rows pull the same way.
+
+use super::anchor::{Anchor, check_different, check_direction, check_point, still};
+use super::on_plane::height;
+use super::on_sphere::{beyond, check_radius};
+use super::smooth::Smooth;
+use crate::number::{Number, dot, minus};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A particle on a circle in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnCircle {
+    /// The particle.
+    pub particle: ParticleId,
+    /// The centre.
+    pub center: Anchor,
+    /// What the circle is at right angles to, of any length.
+    pub axis: [f64; 3],
+    /// r [m], positive.
+    pub radius: Schedule,
+}
+
+impl OnCircle {
+    /// On a circle of a radius [m] about a centre, across an axis.
+    pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Schedule>) -> Self {
+        OnCircle { particle, center: center.into(), axis, radius: radius.into() }
+    }
+}
+
+impl Smooth for OnCircle {
+    fn row_count(&self, _: usize) -> usize {
+        2
+    }
+
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        [Some(self.particle), self.center.particle()].get(i).copied().flatten()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        row: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (p, pd) = self.center.at(|| x(1), t);
+        let d = minus(x(0), p);
+        let (C, rd, n) = if row == 0 {
+            let (C, _, axis) = height(std::array::from_fn(|k| N::constant(self.axis[k])), d);
+            (C, N::constant(0.0), axis)
+        } else {
+            let (r, rd) = self.radius.at(t);
+            let (C, n) = beyond(d, r);
+            (C, rd, n)
+        };
+        gradient(n);
+        if self.center.particle().is_some() {
+            gradient(n.map(|g| -g));
+        }
+        (C, -dot(n, pd) - rd)
+    }
+
+    fn scale(&self, _: f64) -> f64 {
+        self.radius.value(0.0)
+    }
+
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        if dimension == 2 {
+            return Err("a circle with an axis needs three dimensions; in two, a sphere is the circle".into());
+        }
+        check_direction(&still(self.axis), "the axis of a circle", dimension)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.center.check("the centre of a circle")?;
+        check_point(&still(self.axis), "the axis of a circle")?;
+        check_different([self.particle].into_iter().chain(self.center.particle()), "a circle")?;
+        check_radius(&self.radius, "the radius of a circle")
+    }
+}

@@ -1,0 +1,106 @@
+//! OnLine: a particle on a line, through a point p along u (both may be driven) or through two particles a and b.
+//!
+//! ```text
+//! d = u or x_b − x_a,   w = x − p or x − x_a,   C_k = (d × w)_k/|d|      1 row in the plane, 2 in space [m]   (moment.rs)
+//! J = ∂C/∂w on the particle;  ∂C/∂d on b, −∂C/∂w − ∂C/∂d on a
+//! C_t = ∂C/∂d · u̇ − ∂C/∂w · ṗ
+//! ```
+//!
+//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: there is no line, and C is
+//! not a number.
+
+use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
+use super::moment::moment;
+use super::smooth::Smooth;
+use crate::number::{Number, dot, minus, plus};
+use crate::system::ParticleId;
+
+/// The line that a particle is on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line {
+    /// Through p(t) [m] along u(t), of any length.
+    Through(DrivenPoint, DrivenPoint),
+    /// Through two particles.
+    Particles(ParticleId, ParticleId),
+}
+
+/// A particle on a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnLine {
+    /// The particle.
+    pub particle: ParticleId,
+    /// The line.
+    pub line: Line,
+}
+
+impl OnLine {
+    /// On a line that stays, through a point [m] along a direction.
+    pub fn fixed(particle: ParticleId, point: [f64; 3], along: [f64; 3]) -> Self {
+        OnLine { particle, line: Line::Through(still(point), still(along)) }
+    }
+
+    /// On the line through a and b.
+    pub fn through(particle: ParticleId, a: ParticleId, b: ParticleId) -> Self {
+        OnLine { particle, line: Line::Particles(a, b) }
+    }
+}
+
+impl Smooth for OnLine {
+    fn row_count(&self, dimension: usize) -> usize {
+        dimension - 1
+    }
+
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        match (i, &self.line) {
+            (0, _) => Some(self.particle),
+            (1, Line::Particles(a, _)) => Some(*a),
+            (2, Line::Particles(_, b)) => Some(*b),
+            _ => None,
+        }
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        row: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        match &self.line {
+            Line::Through(point, along) => {
+                let ((p, pd), (u, ud)) = (follow(point, t), follow(along, t));
+                let (C, by_u, by_w) = moment(row, u, minus(x(0), p));
+                gradient(by_w);
+                (C, dot(by_u, ud) - dot(by_w, pd))
+            }
+            Line::Particles(..) => {
+                let (C, by_d, by_w) = moment(row, minus(x(2), x(1)), minus(x(0), x(1)));
+                gradient(by_w);
+                gradient(plus(by_w, by_d).map(|g| -g));
+                gradient(by_d);
+                (C, N::constant(0.0))
+            }
+        }
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        extent
+    }
+
+    fn fits(&self, dimension: usize) -> Result<(), String> {
+        match &self.line {
+            Line::Through(_, along) => check_direction(along, "the direction of a line", dimension),
+            Line::Particles(..) => Ok(()),
+        }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        match &self.line {
+            Line::Through(point, along) => {
+                check_point(point, "the point of a line")?;
+                check_point(along, "the direction of a line")
+            }
+            Line::Particles(a, b) => check_different([self.particle, *a, *b].into_iter(), "a line"),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle in the plane, a rod
+//! whose length is driven.
+//!
+//! ```text
+//! d = x − p or x − x_p,   n = d/|d|,   C = |d| − r      1 row [m]
+//! J = nᵀ on the particle, −nᵀ on the other,   C_t = −n·ṗ − ṙ
+//! ```
+//!
+//! λ is the force of the sphere on the particle [N], outwards; of a driven rod the tension is −λ. Distance is the same with a length that
+//! stays: it has the forms, the compliance and the fast ways that need it.
+//!
+//! Fails at |d| = 0, where it takes the first axis for n, so that a projection can still pull the two apart.
+
+use super::anchor::{Anchor, check_different};
+use super::smooth::Smooth;
+use crate::number::{Number, dot, minus, norm, scaled};
+use crate::schedule::Schedule;
+use crate::system::ParticleId;
+
+/// A particle at a distance from a point or another particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnSphere {
+    /// The particle.
+    pub particle: ParticleId,
+    /// The centre.
+    pub center: Anchor,
+    /// r [m], positive.
+    pub radius: Schedule,
+}
+
+impl OnSphere {
+    /// At a distance [m] from a centre.
+    pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Schedule>) -> Self {
+        OnSphere { particle, center: center.into(), radius: radius.into() }
+    }
+}
+
+/// C = |d| − r with n.
+pub(super) fn beyond<N: Number, const D: usize>(d: [N; D], r: N) -> (N, [N; D]) {
+    let length = norm(d);
+    if length.value() > 0.0 {
+        return (length - r, scaled(N::constant(1.0) / length, d));
+    }
+    let first_axis = std::array::from_fn(|k| N::constant(if k == 0 { 1.0 } else { 0.0 }));
+    (N::constant(0.0) - r, first_axis)
+}
+
+/// `Ok` if a radius is positive at the start.
+pub(super) fn check_radius(radius: &Schedule, what: &str) -> Result<(), String> {
+    radius.check(what)?;
+    let value = radius.value(0.0);
+    if value > 0.0 { Ok(()) } else { Err(format!("{what} must be positive, but is {value}")) }
+}
+
+impl Smooth for OnSphere {
+    fn row_count(&self, _: usize) -> usize {
+        1
+    }
+
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        [Some(self.particle), self.center.particle()].get(i).copied().flatten()
+    }
+
+    fn row<N: Number, const D: usize>(
+        &self,
+        _: usize,
+        x: &impl Fn(usize) -> [N; D],
+        t: N,
+        gradient: &mut impl FnMut([N; D]),
+    ) -> (N, N) {
+        let (p, pd) = self.center.at(|| x(1), t);
+        let (r, rd) = self.radius.at(t);
+        let (C, n) = beyond(minus(x(0), p), r);
+        gradient(n);
+        if self.center.particle().is_some() {
+            gradient(n.map(|g| -g));
+        }
+        (C, -dot(n, pd) - rd)
+    }
+
+    fn scale(&self, _: f64) -> f64 {
+        self.radius.value(0.0)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.center.check("the centre of a sphere")?;
+        check_different([self.particle].into_iter().chain(self.center.particle()), "a sphere")?;
+        check_radius(&self.radius, "the radius of a sphere")
+    }
+}
