@@ -36,7 +36,12 @@ pub(super) fn longest_substep<const D: usize>(
         let rows = named.first_row..named.first_row + named.constraint.row_count(D);
         let pull: f64 = lambda[rows.clone()].iter().map(|multiplier| multiplier.abs()).sum();
         let particles = system.layout.start[named.first_row]..system.layout.start[named.first_row + 1];
-        let stiffness = pull * named.constraint.curvature(motion) * particles.len() as f64;
+        // As where rows are evaluated: rods need no call.
+        let curvature = match named.constraint.as_rod() {
+            Some(rod) => rod.curvature(motion),
+            None => named.constraint.curvature(motion),
+        };
+        let stiffness = pull * curvature * particles.len() as f64;
         for &particle in &system.layout.particle[particles] {
             rowsum[particle.0] += stiffness;
         }
