@@ -1,6 +1,6 @@
 //! State: where everything is, and all that a restart needs to go on with the same bits.
 
-use crate::switching::Modes;
+use crate::switching::{Mode, Modes};
 
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +91,9 @@ impl State {
     /// If the lengths differ from d·n.
     pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
-        State { q: positions, qd: velocities, carry: None, ..self.clone() }
+        let mut state = State { q: positions, qd: velocities, carry: None, ..self.clone() };
+        // Which contacts hold there, the next frame finds; what is broken stays so.
+        state.modes.contacts.fill(Mode::Open);
+        state
     }
 }
