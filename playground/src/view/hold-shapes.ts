@@ -3,7 +3,7 @@
 import type { Mark } from '../engine';
 import { niceCeiling } from '../session/numbers';
 import type { Vec3 } from './camera';
-import { ends, type Pen, project } from './holds';
+import { ends, type Pen, project } from './pen';
 
 /** Strokes of a hatch are this far apart and go this deep, px. */
 const HATCH = 12;

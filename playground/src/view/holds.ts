@@ -5,6 +5,7 @@ import type { Camera, Vec3 } from './camera';
 import { traceActuator, traceGround, tracePlane, traceRing } from './hold-shapes';
 import { traceNail, traceSpring } from './marks';
 import type { Palette } from './palette';
+import { ends, type Pen, project } from './pen';
 import type { Picture } from './picture';
 
 /** Within this part of its length a rope counts as taut: half a pixel of a rope across the screen. */
@@ -12,15 +13,6 @@ const TAUT = 5e-4;
 const ANGLE_RADIUS = 24;
 /** How far the direction from which an angle counts goes beyond the arc, px. */
 const REFERENCE = 10;
-
-/** What a shape is traced with. */
-export interface Pen {
-  context: CanvasRenderingContext2D;
-  camera: Camera;
-  /** screen x, y and depth of every particle */
-  screen: Float64Array;
-  picture: Picture;
-}
 
 interface Style {
   kinds: readonly MarkKind[];
@@ -98,23 +90,6 @@ export function drawHolds(
     context.stroke();
   }
   context.setLineDash([]);
-}
-
-/** Where a point of a mark is on the screen, px. */
-export function project(camera: Camera, points: ArrayLike<number>, i: number): [number, number] {
-  const out = [0, 0, 0];
-  camera.project(points, i, out, 3);
-  return [out[0], out[1]];
-}
-
-/** The two ends of a mark on the screen: particles first, then points. */
-export function ends({ screen, camera }: Pen, { particles, points }: Mark): [number, number, number, number] {
-  const [a, b] = particles;
-  const from: [number, number] =
-    a === undefined ? project(camera, points, 0) : [screen[3 * a], screen[3 * a + 1]];
-  const to: [number, number] =
-    b === undefined ? project(camera, points, a === undefined ? 1 : 0) : [screen[3 * b], screen[3 * b + 1]];
-  return [...from, ...to];
 }
 
 function traceBetween(pen: Pen, mark: Mark): void {
