@@ -41,7 +41,7 @@ export const DARK: Palette = {
   grid: '#1e242b',
   ink: '#e8ebee',
   muted: '#929ba6',
-  guide: '#565f69',
+  guide: '#6b7682',
   accent: '#46d0ae',
   particle: '#e8ebee',
   particleRim: '#12161b',
