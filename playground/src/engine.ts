@@ -7,6 +7,7 @@ import start, {
   type InitOutput,
   type IntegratorFacts,
   integrators as integratorFacts,
+  type Mark,
   type Projection,
   type Shipped,
   type StepReport,
@@ -22,6 +23,8 @@ export type {
   FormulationName,
   IntegratorFacts,
   IntegratorName,
+  Mark,
+  MarkKind,
   Nail,
   Projection,
   Rod,
@@ -78,6 +81,11 @@ export class Simulation {
   /** What the scene is made of; rows change with the forms. */
   structure(): Structure {
     return this.inner.structure();
+  }
+
+  /** What holds the particles beside rods, nails and springs, as it is at a time in s. */
+  marks(time: number): Mark[] {
+    return this.inner.marks(time);
   }
 
   get time(): number {

@@ -215,3 +215,14 @@ fn an_infeasible_start_is_marked() {
     assert_eq!(arrays["positions"].numbers(), [0.0, 0.0, 5.0, 0.0, 1.0, 0.5]);
     assert!(arrays["origin"].texts()[0].contains(r#""status":"infeasible""#));
 }
+
+/// Two short frames each: long enough for every kind to be stepped and for the summary to be written.
+#[test]
+fn every_shipped_scene_runs() {
+    let folder = Folder::new();
+    for scene in folder.qhat(&["scenes", "--json"]).well().json().as_array().unwrap() {
+        let name = scene["name"].as_str().unwrap();
+        let ran = folder.qhat(&["run", name, "--duration", "0.02", "--frames", "2", "--json"]).well();
+        assert!(ran.json().is_object(), "{name}");
+    }
+}

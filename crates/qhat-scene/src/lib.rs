@@ -41,6 +41,7 @@
 mod build;
 mod check;
 mod error;
+mod groups;
 mod load;
 mod model;
 mod report;

@@ -1,5 +1,6 @@
 //! The scenes that come with qhat, embedded.
 
+use crate::groups::group_of;
 use crate::report::Report;
 use crate::tree::toml;
 use std::sync::LazyLock;
@@ -11,6 +12,8 @@ pub struct Shipped {
     pub name: &'static str,
     /// The title people see.
     pub title: &'static str,
+    /// The heading under which a list shows it.
+    pub group: &'static str,
     /// The text of its file, TOML.
     pub text: &'static str,
 }
@@ -19,7 +22,7 @@ impl Shipped {
     fn new(name: &'static str, text: &'static str) -> Self {
         let tree = toml::parse(text, &mut Report::new(name, text));
         let written = tree.and_then(|tree| text.get(tree.get("name")?.span.clone()));
-        Shipped { name, title: written.map_or(name, |title| title.trim_matches('"')), text }
+        Shipped { name, title: written.map_or(name, |title| title.trim_matches('"')), group: group_of(name), text }
     }
 
     /// Reads the scene.
@@ -92,4 +95,20 @@ pub fn shipped() -> &'static [Shipped] {
         ]
     });
     &SHIPPED
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shipped;
+    use crate::groups::GROUPS;
+
+    /// In one group each, and the groups name no other.
+    #[test]
+    fn every_scene_has_one_heading() {
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, scenes)| scenes.iter().copied()).collect();
+        let mut listed: Vec<&str> = shipped().iter().map(|scene| scene.name).collect();
+        grouped.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(grouped, listed);
+    }
 }

@@ -1,12 +1,13 @@
 //! The engine's records as JavaScript records, field by field, and the page's controls as calls of the engine.
 
+use crate::marks::Mark;
 use crate::record::{Record, error, list, number, numbers, point, strings, text};
-use crate::{Controls, Projection, StepReport, Structure, Terms};
+use crate::{Controls, Marks, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
     Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System, Warning,
 };
-use wasm_bindgen::JsValue;
+use wasm_bindgen::{JsCast, JsValue};
 
 /// J and A cross only where a person could read them: cells of the larger one, m × N.
 const LARGEST_GRID: usize = 4096;
@@ -47,6 +48,18 @@ pub(crate) fn structure(system: &System, name: &str, description: &str) -> Struc
         .with("nails", list(nails))
         .with("springs", list(springs))
         .finish()
+}
+
+pub(crate) fn marks(marks: &[Mark]) -> Marks {
+    let records = marks.iter().map(|mark| {
+        Record::new()
+            .with("kind", mark.kind)
+            .with("particles", list(mark.particles.iter().map(|particle| particle.0 as u32)))
+            .with("points", numbers(mark.points.as_flattened()))
+            .with("size", mark.size)
+            .with("driven", mark.driven)
+    });
+    list(records).unchecked_into()
 }
 
 pub(crate) fn energy(energy: &qhat::Energy) -> Record {

@@ -3,6 +3,7 @@
 //! The types that cross are declared in `types.d.ts` beside this file and become part of the generated declarations.
 
 mod convert;
+mod marks;
 mod record;
 
 use qhat::{Integrator, ParticleId, Settings};
@@ -34,6 +35,9 @@ extern "C" {
     #[wasm_bindgen(typescript_type = "Terms")]
     pub type Terms;
     /// A list of records of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Mark[]")]
+    pub type Marks;
+    /// A list of records of `types.d.ts`.
     #[wasm_bindgen(typescript_type = "Shipped[]")]
     pub type ShippedScenes;
     /// A list of records of `types.d.ts`.
@@ -48,8 +52,13 @@ extern "C" {
 #[wasm_bindgen]
 pub fn shipped_scenes() -> ShippedScenes {
     let scenes = qhat_scene::shipped().iter();
-    let records =
-        scenes.map(|scene| Record::new().with("name", scene.name).with("title", scene.title).with("text", scene.text));
+    let records = scenes.map(|scene| {
+        Record::new()
+            .with("name", scene.name)
+            .with("title", scene.title)
+            .with("group", scene.group)
+            .with("text", scene.text)
+    });
     list(records).unchecked_into()
 }
 
@@ -94,6 +103,11 @@ impl Simulation {
     /// What the scene is made of, in its present forms.
     pub fn structure(&self) -> Structure {
         convert::structure(self.inner.system(), &self.name, &self.description)
+    }
+
+    /// What holds the particles beside rods, nails and springs, as it is at a time \[s\].
+    pub fn marks(&self, time: f64) -> Marks {
+        convert::marks(&marks::marks(self.inner.system(), self.inner.state(), time))
     }
 
     /// t \[s\].

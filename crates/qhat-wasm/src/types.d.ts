@@ -28,6 +28,8 @@ export interface IntegratorFacts {
 export interface Shipped {
   name: string;
   title: string;
+  /** the heading under which a list shows it; scenes of a group follow each other */
+  group: string;
   text: string;
 }
 
@@ -53,6 +55,59 @@ export interface Spring {
   b: number;
   /** m */
   rest: number;
+}
+
+/** What a mark is drawn as. In brackets its particles, then its points, then its size in m. */
+export type MarkKind =
+  /** taut at its length, slack below [a, b; ; length] */
+  | 'rope'
+  /** pushes at its length, nothing beyond [a, b; ; length] */
+  | 'strut'
+  /** a rod whose length or other end is led [a, b; ; length] or [a; b; length] */
+  | 'rod'
+  /** a piece of a rope over pulleys [a, b] */
+  | 'cord'
+  /** belongs together, with nothing solid between [a, b] */
+  | 'tie'
+  /** a spring that is not linear [a, b] */
+  | 'spring'
+  /** pushes and pulls by itself [a, b] */
+  | 'actuator'
+  /** a nail that is led [particle; point] */
+  | 'nail'
+  /** a curve in the scene [; its points in order] */
+  | 'wire'
+  /** endless [a, b], [a; direction] or [; point, direction] */
+  | 'line'
+  /** a circle across an axis [centre; axis; radius] or [; centre, axis; radius] */
+  | 'ring'
+  /** filled, to be stayed out of [; centre; radius] */
+  | 'ball'
+  /** to be stayed in, or on [; centre; radius] */
+  | 'bowl'
+  /** nothing is below it [; point, unit normal] */
+  | 'ground'
+  /** to be stayed out of [; centre, half its size] */
+  | 'box'
+  /** from the arm a-b to the arm c-d [a, b, c, d], or from a direction to it [c, d; direction] */
+  | 'angle'
+  /** the circle in which a wheel meets others [centre, a point of it; ; radius] */
+  | 'wheel'
+  /** a filled polygon [its corners in order] */
+  | 'area'
+  /** [; point, normal] */
+  | 'plane';
+
+/** What holds particles beside rods, nails and springs: where particles are and where points of the scene are. */
+export interface Mark {
+  kind: MarkKind;
+  particles: number[];
+  /** m, three numbers each */
+  points: Float64Array;
+  /** m */
+  size: number;
+  /** its points and its size follow t; without, they stay as they are */
+  driven: boolean;
 }
 
 /** What a scene is made of: all that does not change while it runs. */

@@ -21,6 +21,13 @@ export function fromShipped({ name, text }: Shipped): SceneSource {
   return { name, fileName: `${name}.toml`, text };
 }
 
+/** The scenes under their headings, both in the order in which they first come. */
+export function grouped(scenes: readonly Shipped[]): { heading: string; scenes: Shipped[] }[] {
+  const headings = new Map<string, Shipped[]>();
+  for (const scene of scenes) headings.set(scene.group, [...(headings.get(scene.group) ?? []), scene]);
+  return Array.from(headings, ([heading, members]) => ({ heading, scenes: members }));
+}
+
 /** The header in which `qhat play` names the file that /scene holds, percent-encoded. */
 export const FILE_NAME_HEADER = 'x-qhat-scene-name';
 

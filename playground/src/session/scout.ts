@@ -1,6 +1,6 @@
 // Looks ahead to find how much room a scene's motion takes, so that the first view holds all of it.
 
-import type { Simulation, Structure } from '../engine';
+import type { Mark, Simulation, Structure } from '../engine';
 import { type Box, emptyBox, include } from '../view/camera';
 import { Run } from './run';
 
@@ -17,6 +17,9 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   const still = emptyBox(dimension);
   include(still, simulation.positions());
   for (const nail of structure.nails) include(still, nail.at.slice(0, dimension));
+  for (const mark of simulation.marks(simulation.time)) {
+    for (const corner of extentOf(mark, dimension)) include(still, corner);
+  }
   const box: Box = { min: [...still.min], max: [...still.max] };
 
   const { h } = simulation.controls();
@@ -28,6 +31,18 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   }
   run.close();
   return within(box, still);
+}
+
+/** Points that show all of a mark that ends somewhere; what is endless is seen from anywhere. */
+function extentOf({ kind, particles, points, size }: Mark, dimension: number): number[][] {
+  const point = (i: number) => Array.from(points.subarray(3 * i, 3 * i + dimension));
+  const around = (centre: number[], reach: number[]) =>
+    [-1, 1].map((side) => centre.map((x, k) => x + side * reach[k]));
+  if (kind === 'wire') return Array.from({ length: points.length / 3 }, (_, i) => point(i));
+  if (kind === 'box') return around(point(0), point(1));
+  if ((kind === 'ring' || kind === 'ball' || kind === 'bowl') && particles.length === 0)
+    return around(point(0), [size, size, size]);
+  return [];
 }
 
 function within(box: Box, still: Box): Box {

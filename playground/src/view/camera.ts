@@ -68,12 +68,16 @@ export class Camera {
     return [(left + this.width - right) / 2, (top + this.height - bottom) / 2];
   }
 
-  /** Screen x, y in px and depth in m (towards the viewer) of point i of a flat array. */
-  project(flat: ArrayLike<number>, i: number, out: Float64Array | number[]): void {
-    const d = this.dimension;
-    const x = flat[d * i] - this.centre[0];
-    const y = flat[d * i + 1] - this.centre[1];
-    const z = d === 3 ? flat[d * i + 2] - this.centre[2] : 0;
+  /** Screen x, y in px and depth in m (towards the viewer) of point i of a flat array of so many numbers a point. */
+  project(
+    flat: ArrayLike<number>,
+    i: number,
+    out: Float64Array | number[],
+    stride: number = this.dimension,
+  ): void {
+    const x = flat[stride * i] - this.centre[0];
+    const y = flat[stride * i + 1] - this.centre[1];
+    const z = this.dimension === 3 ? flat[stride * i + 2] - this.centre[2] : 0;
     const [mx, my] = this.middle;
     out[0] = mx + this.scale * (this.right[0] * x + this.right[1] * y + this.right[2] * z);
     out[1] = my - this.scale * (this.up[0] * x + this.up[1] * y + this.up[2] * z);

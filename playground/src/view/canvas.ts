@@ -1,8 +1,9 @@
-// Draws one Picture on the canvas, back to front: grid, ghost, springs, rods, nails, particles, the hand.
+// Draws one Picture on the canvas, back to front: grid, ghost, what holds particles, springs, rods, nails, particles, the hand.
 
 import type { Rod, Structure } from '../engine';
 import type { Camera } from './camera';
 import { drawGrid, drawScale } from './grid';
+import { drawHolds } from './holds';
 import { drawArrow, traceChains, traceFixed, traceNail, traceSpring } from './marks';
 import { DARK, LIGHT, type Palette, TENSION_STEPS, tensionColours, tensionStep } from './palette';
 import type { Picture, Selection } from './picture';
@@ -68,6 +69,7 @@ export class CanvasView {
     this.measure(picture.structure, camera);
     if (picture.ghost) this.drawGhost(picture, picture.ghost, camera);
     this.place(picture.positions, camera);
+    drawHolds(this.context, picture, this.screen, camera, this.palette);
     this.drawSprings(picture.structure);
     if (camera.dimension === 3) this.drawRodsByDepth(picture);
     else this.drawRodsByColour(picture);

@@ -6,6 +6,8 @@ export interface Palette {
   grid: string;
   ink: string;
   muted: string;
+  /** wires and rails: nearer to the background than what moves */
+  guide: string;
   accent: string;
   particle: string;
   particleRim: string;
@@ -23,6 +25,7 @@ export const LIGHT: Palette = {
   grid: '#e7e5de',
   ink: '#1c2126',
   muted: '#6a7078',
+  guide: '#a9aca9',
   accent: '#0b7a66',
   particle: '#262c33',
   particleRim: '#f6f5f1',
@@ -38,6 +41,7 @@ export const DARK: Palette = {
   grid: '#1e242b',
   ink: '#e8ebee',
   muted: '#929ba6',
+  guide: '#6b7682',
   accent: '#46d0ae',
   particle: '#e8ebee',
   particleRim: '#12161b',

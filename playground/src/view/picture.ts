@@ -1,6 +1,6 @@
 // What one drawn frame needs. Plain data: the drawing reads it and keeps nothing.
 
-import type { Structure } from '../engine';
+import type { Mark, Structure } from '../engine';
 
 export type Selection = { kind: 'particle'; index: number } | { kind: 'rod'; index: number } | null;
 
@@ -15,6 +15,10 @@ export interface Arrow {
 export interface Picture {
   structure: Structure;
   positions: Float64Array;
+  /** what holds the particles beside rods, nails and springs */
+  marks: Mark[];
+  /** the way things fall, a unit vector */
+  down: number[];
   /** N, one per rod */
   tension: Float64Array;
   /** N at the ends of the colour scale */

@@ -1,5 +1,6 @@
 // The canvas, its camera and the drawing loop: asks the session for a frame, draws what it finds.
 
+import type { Mark } from '../engine';
 import { niceCeiling } from '../session/numbers';
 import { boxOfMotion } from '../session/scout';
 import type { Session } from '../session/session.svelte';
@@ -23,6 +24,7 @@ export class Stage {
   private loudest = 0;
   onTensionLimit: (limit: number) => void = () => {};
   private box: Box | null = null;
+  private marks: Mark[] = [];
   private request = 0;
   /** true until a person moves the view: only then may it follow a changed window */
   private fitted = true;
@@ -60,6 +62,7 @@ export class Stage {
     this.camera = new Camera(structure.dimension, Math.abs(gravity[1]) > Math.abs(gravity[2]) ? 1 : 2);
     this.camera.inset = inset;
     this.box = boxOfMotion(run.simulation, structure);
+    this.marks = run.simulation.marks(run.simulation.time);
     this.hover = null;
     this.loudest = 0;
     this.view.resize(this.camera);
@@ -118,6 +121,8 @@ export class Stage {
     const picture: Picture = {
       structure,
       positions: this.smoothed(run.simulation),
+      marks: this.marksNow(run.simulation),
+      down: this.session.down,
       tension,
       tensionLimit: this.tensionLimit,
       ghost: ghost ? this.smoothed(ghost.simulation) : null,
@@ -130,15 +135,27 @@ export class Stage {
     this.view.draw(picture, this.camera);
   }
 
+  /** How far the drawing is behind the state, s. */
+  private behind(): number {
+    const h = this.session.controls?.h ?? 0;
+    return h > LONGEST_SMOOTHED_STEP || !this.session.running ? 0 : (1 - this.session.fraction) * h;
+  }
+
   /** Positions part of a step back along the velocity, so that steps and screen frames out of beat do not judder. */
   private smoothed(simulation: NonNullable<Session['run']>['simulation']): Float64Array {
     const positions = simulation.positions();
-    const h = this.session.controls?.h ?? 0;
-    const back = (1 - this.session.fraction) * h;
-    if (back <= 0 || h > LONGEST_SMOOTHED_STEP || !this.session.running) return positions;
+    const back = this.behind();
+    if (back <= 0) return positions;
     const velocities = simulation.velocities();
     for (let i = 0; i < positions.length; i += 1) positions[i] -= back * velocities[i];
     return positions;
+  }
+
+  /** Asked for again only where something is led. */
+  private marksNow(simulation: NonNullable<Session['run']>['simulation']): Mark[] {
+    if (this.marks.some(({ driven }) => driven))
+      this.marks = simulation.marks(simulation.time - this.behind());
+    return this.marks;
   }
 
   private readTension(): Float64Array {

@@ -45,6 +45,16 @@ impl Angle {
         Angle { arms: Arms::new([to]), direction, angle: angle.into() }
     }
 
+    /// The arm from which it is counted, `None` where that is a direction, and the arm to which.
+    pub fn arms(&self) -> (Option<[ParticleId; 2]>, [ParticleId; 2]) {
+        if self.has_direction() { (None, self.arms.ends(0)) } else { (Some(self.arms.ends(0)), self.arms.ends(1)) }
+    }
+
+    /// The direction from which it is counted; zero where that is an arm.
+    pub fn direction(&self) -> [f64; 3] {
+        self.direction
+    }
+
     fn has_direction(&self) -> bool {
         self.arms.count() == 1
     }

@@ -39,6 +39,11 @@ impl Arms {
         self.ends.len()
     }
 
+    /// Where one arm begins and ends.
+    pub(super) fn ends(&self, arm: usize) -> [ParticleId; 2] {
+        self.ends[arm].map(|place| self.particles[place])
+    }
+
     /// Whether an arm begins where it ends.
     pub(super) fn is_without_length(&self, arm: usize) -> bool {
         self.ends[arm][0] == self.ends[arm][1]

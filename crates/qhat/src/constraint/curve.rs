@@ -103,6 +103,11 @@ impl Curve {
         }
     }
 
+    /// Where its parameter begins and ends.
+    pub fn range(&self) -> [f64; 2] {
+        [self.shape.from, self.shape.to]
+    }
+
     /// The point at a parameter [m]; z = 0 in two dimensions.
     pub fn point(&self, s: f64) -> [f64; 3] {
         self.shape.at::<3>(s).map(|[c, _, _]| c)

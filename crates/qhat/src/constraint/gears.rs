@@ -84,6 +84,22 @@ impl Gears {
         let parts = vec![Part::Turn(1), Part::Way([k * x, k * y])];
         Gears { arms: Arms::new([pinion, [pinion[0], rack]]), parts, angle: angle.into() }
     }
+
+    /// The arms whose angles it adds, each with its z; of two wheels that mesh also the arm from centre to centre.
+    pub fn turns(&self) -> impl Iterator<Item = ([ParticleId; 2], i32)> + '_ {
+        self.parts.iter().enumerate().filter_map(|(arm, part)| match *part {
+            Part::Turn(z) => Some((self.arms.ends(arm), z)),
+            Part::Way(_) => None,
+        })
+    }
+
+    /// The arms whose ways it adds, from a pinion's centre to its rack, each with k [rad/m].
+    pub fn ways(&self) -> impl Iterator<Item = ([ParticleId; 2], [f64; 2])> + '_ {
+        self.parts.iter().enumerate().filter_map(|(arm, part)| match *part {
+            Part::Way(k) => Some((self.arms.ends(arm), k)),
+            Part::Turn(_) => None,
+        })
+    }
 }
 
 impl Smooth for Gears {

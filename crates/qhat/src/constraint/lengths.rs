@@ -44,6 +44,11 @@ impl Lengths {
     pub fn ratio(ab: [ParticleId; 2], cd: [ParticleId; 2], k: f64) -> Self {
         Lengths::new(&[(ab, 1.0), (cd, -k)], 0.0)
     }
+
+    /// Its segments, each from one particle to another, with their weights.
+    pub fn segments(&self) -> impl Iterator<Item = ([ParticleId; 2], f64)> + '_ {
+        self.weights.iter().enumerate().map(|(segment, &weight)| (self.segments.ends(segment), weight))
+    }
 }
 
 impl Smooth for Lengths {

@@ -46,6 +46,11 @@ impl Volume {
         Volume { particles, faces, around, volume: volume.into() }
     }
 
+    /// Its faces.
+    pub fn triangles(&self) -> impl Iterator<Item = [ParticleId; 3]> + '_ {
+        self.faces.iter().map(|corners| corners.map(|corner| self.particles[corner]))
+    }
+
     /// (b − a)·((c − a) × (d − a))/6 = V [m³].
     pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Schedule>) -> Self {
         Volume::new(&[[a, c, b], [a, b, d], [a, d, c], [b, c, d]], volume)

@@ -1,0 +1,328 @@
+//! What holds the particles beside rods, nails and springs, as primitives that a page can draw.
+//!
+//! A mark names particles, whose places the page knows at every frame, and points of the scene at t. Only a mark that follows t is worth
+//! asking for again. What has no picture (an expression) has no mark.
+
+use qhat::{
+    Anchor, Barrier, Constraint, DrivenPoint, Facet, Force, Gears, Limits, Line, OnCircle, OnSphere, ParticleId, Plane,
+    Relation, Schedule, State, Surface, System,
+};
+
+/// Pieces of a drawn wire: on a whole screen each is some ten pixels long.
+const PIECES: usize = 192;
+
+/// One thing to draw. What particles, points \[m\] and size \[m\] are of each kind stands in `types.d.ts`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Mark {
+    pub(crate) kind: &'static str,
+    pub(crate) particles: Vec<ParticleId>,
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) size: f64,
+    /// Whether it follows t.
+    pub(crate) driven: bool,
+}
+
+impl Mark {
+    fn new(kind: &'static str, particles: impl Into<Vec<ParticleId>>) -> Self {
+        Mark { kind, particles: particles.into(), ..Mark::default() }
+    }
+
+    fn at(self, points: impl Into<Vec<[f64; 3]>>) -> Self {
+        Mark { points: points.into(), ..self }
+    }
+
+    fn sized(self, size: f64) -> Self {
+        Mark { size, ..self }
+    }
+
+    /// Says that it follows t if one of these does.
+    fn following<'a>(self, schedules: impl IntoIterator<Item = &'a Schedule>) -> Self {
+        let driven = schedules.into_iter().any(|schedule| matches!(schedule, Schedule::Function(_)));
+        Mark { driven: self.driven || driven, ..self }
+    }
+
+    /// Puts its centre first: a particle, or a point at t.
+    fn around(mut self, center: &Anchor, t: f64) -> Self {
+        match center {
+            Anchor::Particle(particle) => self.particles.insert(0, *particle),
+            Anchor::Point(point) => {
+                self.points.insert(0, value(point, t));
+                return self.following(point);
+            }
+        }
+        self
+    }
+}
+
+/// What holds the particles at t \[s\].
+pub(crate) fn marks(system: &System, state: &State, t: f64) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    for named in system.constraints() {
+        add(&named.constraint, system, state, t, &mut marks);
+    }
+    let mut outlines: Vec<Vec<ParticleId>> = Vec::new();
+    for force in system.forces() {
+        match force {
+            Force::CubicSpring(spring) => marks.push(Mark::new("spring", [spring.a, spring.b])),
+            Force::Actuator(actuator) => marks.push(Mark::new("actuator", [actuator.a, actuator.b])),
+            Force::Pressure(pressure) => match pressure.facet {
+                // The edges of an outline come one after the other.
+                Facet::Edge([a, b]) => match outlines.last_mut() {
+                    Some(outline) if outline.last() == Some(&a) => outline.push(b),
+                    _ => outlines.push(vec![a, b]),
+                },
+                Facet::Triangle(corners) => marks.push(Mark::new("area", corners)),
+            },
+            _ => (),
+        }
+    }
+    marks.extend(outlines.into_iter().map(|outline| Mark::new("area", outline)));
+    marks
+}
+
+fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &mut Vec<Mark>) {
+    match constraint {
+        Constraint::Distance(_) | Constraint::Nail(_) | Constraint::ExpressionConstraint(_) => (),
+        Constraint::Limits(limits) => add_limits(limits, marks),
+        Constraint::Barrier(barrier) => add_barrier(barrier, marks),
+        Constraint::Relation(relation) => add_relation(relation, t, marks),
+        Constraint::Lengths(lengths) => {
+            let is_cord = lengths.segments().all(|(_, weight)| weight > 0.0);
+            let kind = if is_cord { "cord" } else { "tie" };
+            marks.extend(lengths.segments().map(|(ends, _)| Mark::new(kind, ends)));
+        }
+        Constraint::Angle(angle) => {
+            let (from, to) = angle.arms();
+            marks.push(match from {
+                Some(from) => Mark::new("angle", [from, to].concat()),
+                None => Mark::new("angle", to).at([angle.direction()]),
+            });
+        }
+        Constraint::Gears(gears) => add_gears(gears, system, state, marks),
+        Constraint::Area(area) => marks.push(Mark::new("area", area.corners.clone())),
+        Constraint::Volume(volume) => marks.extend(volume.triangles().map(|corners| Mark::new("area", corners))),
+        Constraint::Direction(direction) => marks.push(Mark::new("tie", [direction.a, direction.b])),
+        Constraint::OnLine(on) => marks.push(match &on.line {
+            Line::Through(point, along) => {
+                Mark::new("line", []).at([value(point, t), value(along, t)]).following(point).following(along)
+            }
+            Line::Particles(a, b) => Mark::new("line", [*a, *b]),
+        }),
+        Constraint::OnPlane(on) => marks.push(match &on.plane {
+            Plane::Across(point, normal) if system.dimension() == 2 => {
+                let [x, y, _] = value(normal, t);
+                Mark::new("line", []).at([value(point, t), [-y, x, 0.0]]).following(point).following(normal)
+            }
+            Plane::Across(point, normal) => {
+                Mark::new("plane", []).at([value(point, t), value(normal, t)]).following(point).following(normal)
+            }
+            Plane::Particles(corners) => Mark::new("area", *corners),
+        }),
+        Constraint::OnSphere(sphere) => add_sphere(sphere, system, t, marks),
+        Constraint::OnCircle(OnCircle { center, axis, radius, .. }) => {
+            marks.push(Mark::new("ring", []).at([*axis]).around(center, t).sized(radius.value(t)).following([radius]))
+        }
+        Constraint::OnCurve(on) => {
+            let [from, to] = on.curve.range();
+            let s = |i: usize| from + (to - from) * i as f64 / PIECES as f64;
+            let points: Vec<_> = (0..=PIECES).map(|i| on.curve.point(s(i))).collect();
+            push_once(Mark::new("wire", []).at(points), marks);
+        }
+    }
+}
+
+fn add_limits(limits: &Limits, marks: &mut Vec<Mark>) {
+    let ends = [limits.a, limits.b];
+    marks.extend(limits.longest.map(|longest| Mark::new("rope", ends).sized(longest)));
+    marks.extend(limits.shortest.map(|shortest| Mark::new("strut", ends).sized(shortest)));
+}
+
+fn add_barrier(barrier: &Barrier, marks: &mut Vec<Mark>) {
+    let mark = match barrier.surface {
+        Surface::HalfSpace { normal, offset } => {
+            let size = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+            let unit = normal.map(|n| n / size);
+            Mark::new("ground", []).at([unit.map(|n| n * offset), unit])
+        }
+        Surface::Ball { centre, radius, inside } => {
+            Mark::new(if inside { "bowl" } else { "ball" }, []).at([centre]).sized(radius)
+        }
+        Surface::Box { centre, half } => Mark::new("box", []).at([centre, half]),
+    };
+    push_once(mark, marks);
+}
+
+/// What tells several particles to be somewhere together is drawn from the first to the others; a lone one that is led, as a nail.
+fn add_relation(relation: &Relation, t: f64, marks: &mut Vec<Mark>) {
+    if let [(particle, weight)] = relation.terms[..] {
+        let place = value(&relation.point, t).map(|p| p / weight);
+        marks.push(Mark::new("nail", [particle]).at([place]).following(&relation.point));
+    } else if relation.terms.iter().map(|(_, weight)| weight).sum::<f64>().abs() < 1e-9 {
+        // Weights that add up to 0 tie the particles to each other, whatever the rounding of thirds; others tie them to a point.
+        let first = relation.terms[0].0;
+        marks.extend(relation.terms[1..].iter().map(|&(other, _)| Mark::new("tie", [first, other])));
+    }
+}
+
+/// A circle to run along where nothing moves it, a rod of changing length where something does.
+fn add_sphere(sphere: &OnSphere, system: &System, t: f64, marks: &mut Vec<Mark>) {
+    let OnSphere { particle, center, radius } = sphere;
+    let size = radius.value(t);
+    let still = matches!(radius, Schedule::Constant(_)) && matches!(center, Anchor::Point(_));
+    let mark = if still && system.dimension() == 2 {
+        Mark::new("ring", []).at([[0.0, 0.0, 1.0]])
+    } else if still {
+        Mark::new("bowl", [])
+    } else {
+        Mark::new("rod", [*particle])
+    };
+    marks.push(mark.around(center, t).sized(size).following([radius]));
+}
+
+/// Pitch circles: of two wheels that mesh from outside, from the distance of their centres; else through the marked points.
+fn add_gears(gears: &Gears, system: &System, state: &State, marks: &mut Vec<Mark>) {
+    let length = |[a, b]: [ParticleId; 2]| {
+        let (d, q) = (system.dimension(), state.positions());
+        (0..d).map(|k| q[d * a.0 + k] - q[d * b.0 + k]).map(|x| x * x).sum::<f64>().sqrt()
+    };
+    let turns: Vec<_> = gears.turns().collect();
+    let ways: Vec<_> = gears.ways().collect();
+    match (&turns[..], &ways[..]) {
+        (&[(a, za), (b, zb), (centres, z)], []) if za * zb > 0 && za + zb == -z && centres == [a[0], b[0]] => {
+            let tooth = length(centres) / f64::from(z.abs());
+            marks.extend([(a, za), (b, zb)].map(|(arm, z)| Mark::new("wheel", arm).sized(tooth * f64::from(z.abs()))));
+        }
+        (&[(pinion, _)], &[(rack, [x, y])]) => {
+            marks.push(Mark::new("wheel", pinion).sized(1.0 / (x * x + y * y).sqrt()));
+            marks.push(Mark::new("line", [rack[1]]).at([[x, y, 0.0]]));
+        }
+        _ => marks.extend(turns.iter().map(|&(arm, _)| Mark::new("wheel", arm).sized(length(arm)))),
+    }
+}
+
+/// Surfaces and wires that many particles share are drawn once.
+fn push_once(mark: Mark, marks: &mut Vec<Mark>) {
+    if !marks.contains(&mark) {
+        marks.push(mark);
+    }
+}
+
+fn value(point: &DrivenPoint, t: f64) -> [f64; 3] {
+    [0, 1, 2].map(|k: usize| point[k].value(t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use qhat::{Angle, Area, Curve, Dimension, Expression, Lengths, OnCurve, OnLine, Particle, Purpose, Scope};
+
+    const A: ParticleId = ParticleId(0);
+    const B: ParticleId = ParticleId(1);
+    const C: ParticleId = ParticleId(2);
+    const D: ParticleId = ParticleId(3);
+
+    fn expression(text: &str, purpose: Purpose) -> Expression {
+        Expression::parse(text, &Scope::new(purpose, Dimension::Two, &|_| None)).unwrap()
+    }
+
+    /// The marks of constraints on the corners of a square of 3 m, at t.
+    fn drawn(constraints: impl IntoIterator<Item = Constraint>, t: f64) -> Vec<Mark> {
+        let mut builder = System::builder(Dimension::Two);
+        for (name, at) in [("a", [0.0, 0.0]), ("b", [3.0, 0.0]), ("c", [3.0, 3.0]), ("d", [0.0, 3.0])] {
+            builder.particle(Particle::at(name, at));
+        }
+        for (i, constraint) in constraints.into_iter().enumerate() {
+            builder.constraint(format!("{i}"), constraint);
+        }
+        let (system, state) = builder.build().unwrap();
+        marks(&system, &state, t)
+    }
+
+    fn kinds(marks: &[Mark]) -> Vec<&'static str> {
+        marks.iter().map(|mark| mark.kind).collect()
+    }
+
+    #[test]
+    fn a_pulley_is_a_cord_and_a_ratio_ties() {
+        let cord = drawn([Lengths::pulley(&[A, B, C], 6.0).into()], 0.0);
+        assert_eq!(kinds(&cord), ["cord", "cord"]);
+        assert_eq!(cord[1].particles, [B, C]);
+        assert_eq!(kinds(&drawn([Lengths::ratio([A, B], [A, D], 1.0).into()], 0.0)), ["tie", "tie"]);
+    }
+
+    #[test]
+    fn a_rope_and_a_strut_know_their_limits() {
+        let both = drawn([Limits::between(A, B, 2.0, 4.0).into()], 0.0);
+        assert_eq!(kinds(&both), ["rope", "strut"]);
+        assert_eq!((both[0].size, both[1].size), (4.0, 2.0));
+    }
+
+    #[test]
+    fn what_is_led_moves_with_time_and_nothing_else_does() {
+        let radius = Schedule::Function(expression("3 + sin(t)", Purpose::Time));
+        let rod = || Constraint::from(OnSphere::new(B, A, radius.clone()));
+        let rail = Constraint::from(OnLine::fixed(C, [0.0, 3.0, 0.0], [1.0, 0.0, 0.0]));
+        let [first, later] = [0.0, 1.0].map(|t| drawn([rod(), rail.clone()], t));
+        assert_eq!(kinds(&first), ["rod", "line"]);
+        assert_eq!((first[0].size, first[0].particles.as_slice()), (3.0, [A, B].as_slice()));
+        assert!((later[0].size - (3.0 + 1.0f64.sin())).abs() < 1e-12); // two sines, a rounding apart
+        assert_eq!((first[0].driven, first[1].driven), (true, false));
+        assert_eq!(first[1], later[1]);
+    }
+
+    #[test]
+    fn a_wire_is_drawn_from_end_to_end_once() {
+        let path = ["s", "s^2"].map(|text| expression(text, Purpose::Curve)).to_vec();
+        let curve = Curve::parametric(path, 0.0, 3.0).unwrap();
+        let bead = |particle| Constraint::from(OnCurve { particle, curve: curve.clone() });
+        let wires = drawn([bead(A), bead(B)], 0.0);
+        assert_eq!(kinds(&wires), ["wire"]);
+        assert_eq!(wires[0].points.first(), Some(&[0.0, 0.0, 0.0]));
+        assert_eq!(wires[0].points.last(), Some(&[3.0, 9.0, 0.0]));
+    }
+
+    #[test]
+    fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
+        let surface = Surface::HalfSpace { normal: [0.0, 2.0, 0.0], offset: -1.0 };
+        let ground = drawn([A, B, C].map(|particle| Barrier::new(particle, surface.clone()).into()), 0.0);
+        assert_eq!(kinds(&ground), ["ground"]);
+        assert_eq!(ground[0].points, [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]]);
+    }
+
+    #[test]
+    fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
+        let wheels = drawn([Gears::mesh([[A, D], [B, C]], [20, 10], 0.0).into()], 0.0);
+        assert_eq!(kinds(&wheels), ["wheel", "wheel"]);
+        assert_eq!((wheels[0].size, wheels[1].size), (2.0, 1.0));
+        let rack = drawn([Gears::rack([A, D], B, [1.0, 0.0], 0.5, 0.0).into()], 0.0);
+        assert_eq!(kinds(&rack), ["wheel", "line"]);
+        assert_eq!((rack[0].size, rack[1].particles.as_slice()), (0.5, [B].as_slice()));
+    }
+
+    #[test]
+    fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
+        let point = [2.0, 4.0, 0.0].map(Schedule::Constant);
+        let nail = drawn([Relation { terms: vec![(A, 2.0)], point }.into()], 0.0);
+        assert_eq!((nail[0].kind, nail[0].points.as_slice()), ("nail", [[1.0, 2.0, 0.0]].as_slice()));
+        let middle = drawn([Relation::midpoint(C, A, B).into()], 0.0);
+        assert_eq!(middle.iter().map(|mark| mark.particles.clone()).collect::<Vec<_>>(), [[C, A], [C, B]]);
+        let center = Relation::center_of_mass([(A, 1.0), (B, 1.0)], [0.0; 3].map(Schedule::Constant));
+        assert_eq!(drawn([center.into()], 0.0), []);
+    }
+
+    #[test]
+    fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
+        let right = std::f64::consts::FRAC_PI_2;
+        let angle = Angle::between([A, B], [A, D], right);
+        let turned = Angle::from_direction([1.0, 0.0, 0.0], [A, D], right);
+        let area = Area { corners: vec![A, B, C, D], area: Schedule::Constant(9.0) };
+        let all = drawn([angle.into(), turned.into(), area.into()], 0.0);
+        assert_eq!(kinds(&all), ["angle", "angle", "area"]);
+        assert_eq!(all[0].particles, [A, B, A, D]);
+        assert_eq!(
+            (all[1].particles.as_slice(), all[1].points.as_slice()),
+            ([A, D].as_slice(), [[1.0, 0.0, 0.0]].as_slice())
+        );
+        assert_eq!(all[2].particles, [A, B, C, D]);
+    }
+}

@@ -1,0 +1,114 @@
+// The shapes of marks that take more than a line: hatched ground, a patch of a plane, a ring in space, a piston.
+
+import type { Mark } from '../engine';
+import { niceCeiling } from '../session/numbers';
+import type { Vec3 } from './camera';
+import { ends, type Pen, project } from './pen';
+
+/** Strokes of a hatch are this far apart and go this deep, px. */
+const HATCH = 12;
+/** The lines of a plane are about this far apart, px, and so many each way. */
+const PLANE_CELL = 60;
+const PLANE_CELLS = 8;
+/** A ring on a screen of a thousand pixels is within a pixel of this many straight pieces. */
+const RING_PIECES = 96;
+
+/** In the plane a line across the canvas, hatched below; in space a patch of the plane. */
+export function traceGround(pen: Pen, mark: Mark): void {
+  const { context, camera } = pen;
+  if (camera.dimension === 3) {
+    tracePlane(pen, mark);
+    return;
+  }
+  const [x, y] = project(camera, mark.points, 0);
+  // the screen's y points down
+  const [nx, ny] = [mark.points[3], -mark.points[4]];
+  const [ux, uy] = [-ny, nx];
+  const [mx, my] = camera.middle;
+  const reach = camera.width + camera.height;
+  const nearest = (mx - x) * ux + (my - y) * uy;
+  context.moveTo(x + (nearest - reach) * ux, y + (nearest - reach) * uy);
+  context.lineTo(x + (nearest + reach) * ux, y + (nearest + reach) * uy);
+  const first = Math.ceil((nearest - reach) / HATCH);
+  const last = Math.floor((nearest + reach) / HATCH);
+  // counted from a point of the ground, so that the hatch moves with the view
+  for (let k = first; k <= last; k += 1) {
+    const [px, py] = [x + k * HATCH * ux, y + k * HATCH * uy];
+    context.moveTo(px, py);
+    context.lineTo(px - HATCH * (nx - 0.7 * ux), py - HATCH * (ny - 0.7 * uy));
+  }
+}
+
+/** Lines of a grid in a plane, around where it is nearest to the middle of the view. */
+export function tracePlane({ context, camera }: Pen, { points }: Mark): void {
+  const point = [points[0], points[1], points[2]];
+  const [n, u, v] = frame([points[3], points[4], points[5]]);
+  const cell = niceCeiling(PLANE_CELL / camera.scale);
+  const away = camera.centre.map((x, k) => x - point[k]);
+  // whole cells from the plane's own point, so that the lines stay in the scene
+  const [i, j] = [u, v].map((axis) => Math.round(dot(away, axis) / cell));
+  const at = (a: number, b: number) =>
+    project(
+      camera,
+      point.map((x, k) => x + (i + a) * cell * u[k] + (j + b) * cell * v[k]),
+      0,
+    );
+  if (Math.abs(dot(camera.towards, n)) < 1e-3) return;
+  const half = PLANE_CELLS / 2;
+  for (let k = -half; k <= half; k += 1) {
+    context.moveTo(...at(k, -half));
+    context.lineTo(...at(k, half));
+    context.moveTo(...at(-half, k));
+    context.lineTo(...at(half, k));
+  }
+}
+
+export function traceRing(pen: Pen, mark: Mark): void {
+  const { context, camera } = pen;
+  const [x, y] = ends(pen, mark);
+  const axis = mark.points.subarray(mark.points.length - 3);
+  const [, u, v] = frame([axis[0], axis[1], axis[2]]);
+  const radius = mark.size * camera.scale;
+  const reach = (to: Vec3, along: Vec3) => radius * dot(to, along);
+  for (let i = 0; i < RING_PIECES; i += 1) {
+    const [c, s] = [Math.cos((2 * Math.PI * i) / RING_PIECES), Math.sin((2 * Math.PI * i) / RING_PIECES)];
+    const px = x + c * reach(u, camera.right) + s * reach(v, camera.right);
+    const py = y - c * reach(u, camera.up) - s * reach(v, camera.up);
+    if (i === 0) context.moveTo(px, py);
+    else context.lineTo(px, py);
+  }
+  context.closePath();
+}
+
+/** The thick half of a piston, from its first end to the middle. */
+export function traceActuator(pen: Pen, mark: Mark): void {
+  const [ax, ay, bx, by] = ends(pen, mark);
+  pen.context.moveTo(ax, ay);
+  pen.context.lineTo((ax + bx) / 2, (ay + by) / 2);
+}
+
+/** The unit vector of a direction and two across it. */
+function frame(direction: number[]): [Vec3, Vec3, Vec3] {
+  const n = unit(direction);
+  const least = [0, 1, 2].reduce((best, k) => (Math.abs(n[k]) < Math.abs(n[best]) ? k : best), 0);
+  const u = unit(
+    cross(
+      [0, 1, 2].map((k) => (k === least ? 1 : 0)),
+      n,
+    ),
+  );
+  return [n, u, cross(n, u)];
+}
+
+function dot(a: ArrayLike<number>, b: ArrayLike<number>): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+function cross(a: ArrayLike<number>, b: ArrayLike<number>): Vec3 {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function unit(a: ArrayLike<number>): Vec3 {
+  const size = Math.hypot(a[0], a[1], a[2]);
+  return [a[0] / size, a[1] / size, a[2] / size];
+}
