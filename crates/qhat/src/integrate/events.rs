@@ -25,7 +25,7 @@ use crate::point::Motion;
 use crate::report::{Event, EventKind};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
-use crate::switching::{Mode, Modes, Moment, Pace, Trigger, still};
+use crate::switching::{Mode, Modes, Moment, Pace, TOUCHES, Trigger, still};
 use crate::system::System;
 
 /// Where a force of this part of the largest counts as none.
@@ -90,7 +90,7 @@ impl<'a, const D: usize> Switching<'a, D> {
         let (system, settings) = (self.run.system, self.run.settings);
         let workspace = &mut *self.run.field.workspace;
         let pace = Pace {
-            touches: 2.0 * settings.constraint_tolerance,
+            touches: TOUCHES * settings.constraint_tolerance,
             rest: if self.count < BOUNCING { Some(1e-3 * self.frame) } else { None },
             frame: self.frame,
         };

@@ -18,12 +18,14 @@ mod complementarity;
 mod impact;
 mod modes;
 mod reaction;
+mod start;
 
 pub(crate) use complementarity::Jam;
 use complementarity::{Touching, settle};
 use impact::{collide, hold};
 pub(crate) use modes::{Mode, Modes};
-pub(crate) use reaction::{Moment, Pace, Trigger, still};
+pub(crate) use reaction::{Moment, Pace, TOUCHES, Trigger, still};
+pub(crate) use start::deepest;
 
 use crate::constraint::Holds;
 use crate::system::NamedConstraint;

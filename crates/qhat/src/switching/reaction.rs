@@ -17,6 +17,9 @@ const SAME_WAY: f64 = 0.9995;
 /// What parts slowly is held, which may push something else to close in; more rounds than this are a chain without an end.
 const ROUNDS: usize = 100;
 
+/// What is open and nearer than this many tolerances touches: twice what a margin may be off at its event.
+pub(crate) const TOUCHES: f64 = 2.0;
+
 /// What ended a substep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Trigger {
