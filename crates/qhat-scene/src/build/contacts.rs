@@ -50,12 +50,24 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let surface = Surface::HalfSpace { normal, offset };
-        self.add_barriers((it.id.as_ref(), "half-space"), it.particles.as_deref(), surface, (it.restitution, it.friction), place)
+        self.add_barriers(
+            (it.id.as_ref(), "half-space"),
+            it.particles.as_deref(),
+            surface,
+            (it.restitution, it.friction),
+            place,
+        )
     }
 
     pub(super) fn add_ball(&mut self, it: &Ball, place: &Node) -> Option<()> {
         let surface = Surface::Ball { centre: it.center.padded(), radius: it.radius, inside: it.inside };
-        self.add_barriers((it.id.as_ref(), "ball"), it.particles.as_deref(), surface, (it.restitution, it.friction), place)
+        self.add_barriers(
+            (it.id.as_ref(), "ball"),
+            it.particles.as_deref(),
+            surface,
+            (it.restitution, it.friction),
+            place,
+        )
     }
 
     pub(super) fn add_box(&mut self, it: &Box, place: &Node) -> Option<()> {
@@ -68,7 +80,13 @@ impl Assembly<'_, '_, '_> {
         // In the plane the third is not looked at, and must only be positive.
         let half = std::array::from_fn(|k| it.size.0.get(k).map_or(1.0, |size| 0.5 * size));
         let surface = Surface::Box { centre: it.center.padded(), half };
-        self.add_barriers((it.id.as_ref(), "box"), it.particles.as_deref(), surface, (it.restitution, it.friction), place)
+        self.add_barriers(
+            (it.id.as_ref(), "box"),
+            it.particles.as_deref(),
+            surface,
+            (it.restitution, it.friction),
+            place,
+        )
     }
 
     /// One barrier for each particle, named after both.
@@ -100,14 +118,11 @@ pub(super) fn check_start(
     report: &mut Report<'_>,
 ) {
     let Err(error) = qhat::check_start(system, state, settings) else { return };
-    let (place, help) = match &error {
-        StepError::NoEvents { .. } => (tree.key("step").key("integrator").span.clone(), None),
-        StepError::Penetrates { constraint, .. } => {
-            let place = places.get(constraint).cloned().unwrap_or_default();
-            (place, Some("the side that is allowed is where C is positive; see docs/method/contacts.md".to_owned()))
-        }
-        _ => (0..0, None),
+    let place = match &error {
+        StepError::NoEvents { .. } => tree.key("step").key("integrator").span.clone(),
+        StepError::Penetrates { constraint, .. } => places.get(constraint).cloned().unwrap_or_default(),
+        _ => 0..0,
     };
     let message = report.fitted(&error.to_string());
-    report.error(place, message, help);
+    report.error(place, message, None);
 }

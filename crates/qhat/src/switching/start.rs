@@ -1,7 +1,6 @@
 //! Whether a start respects what acts on one side.
 
 use super::{Mode, TOUCHES};
-use crate::constraint::Rows;
 use crate::point::Motion;
 use crate::state::State;
 use crate::system::System;
@@ -12,7 +11,7 @@ pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance:
     if system.switches.contacts.is_empty() {
         return None;
     }
-    let mut rows = Rows::new(system.layout.clone(), D, system.particle_count());
+    let mut rows = system.empty_rows();
     let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let contacts = system.switches.contacts.iter().enumerate();
@@ -24,7 +23,6 @@ pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance:
         state.modes.contacts.get(*k).is_none_or(|&mode| mode == Mode::Open) && !broken(contact.constraint)
     });
     let depths = open.map(|(_, contact)| (contact, -rows.C[contact.normal]));
-    let violated =
-        depths.filter(|(contact, depth)| *depth > TOUCHES * tolerance * system.row_scale[contact.normal]);
+    let violated = depths.filter(|(contact, depth)| *depth > TOUCHES * tolerance * system.row_scale[contact.normal]);
     violated.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(contact, depth)| (contact.constraint, depth))
 }
