@@ -5,8 +5,10 @@ use qhat_scene::{Format, SceneErrors, json_schema, load, shipped};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-fn every_key() -> [Value; 2] {
-    [include_str!("every-key.toml"), include_str!("every-key-in-space.toml")].map(|text| toml::from_str(text).unwrap())
+fn every_key() -> [Value; 3] {
+    let texts =
+        [include_str!("every-key.toml"), include_str!("every-key-in-space.toml"), include_str!("every-contact.toml")];
+    texts.map(|text| toml::from_str(text).unwrap())
 }
 
 fn read(scene: &Value) -> Result<(), SceneErrors> {
@@ -86,7 +88,12 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 56] = [
+const BETWEEN_KEYS: [&str; 61] = [
+    " beyond what ",
+    "the shortest length, the longest, or both",
+    "must be more than the shortest",
+    "no direction that can be measured",
+    "the size of a box",
     "there is no ",
     "is given twice",
     "is given to two",

@@ -73,6 +73,7 @@ fn an_expectation_that_does_not_hold_is_found() {
     for (untrue, found) in [
         ("degrees_of_freedom = 2", "degrees of freedom"),
         ("max_residual = 1e-6", "a row was off"),
+        ("broken = ['pivot-bob']", "broken at the end"),
         ("energy_never_rises = true", "the energy rose"),
         ("energy_error = 1e-9", "energy error"),
         ("at_end = [{ particle = 'bob', axis = 'y', value = 0.5, tolerance = 0.1 }]", "bob ended at"),

@@ -5,7 +5,8 @@ use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Marks, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
-    Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation, System, Warning,
+    Constraint, DistanceForm, EventKind, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation,
+    System, Warning,
 };
 use wasm_bindgen::{JsCast, JsValue};
 
@@ -87,9 +88,23 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .with("energy", energy(&report.energy))
         .with("integrator", report.integrator.name())
         .with("solver", report.solver.to_string())
+        .with("events", list(report.events.iter().map(event)))
         .with("too_stiff", too_stiff.map_or(JsValue::NULL, |warning| warning.to_string().into()))
         .with("warnings", strings(warnings))
         .finish()
+}
+
+/// What happened, to which constraint, and when.
+fn event(event: &qhat::Event) -> Record {
+    let kind = match event.kind {
+        EventKind::Impact { .. } => "impact",
+        EventKind::Closed => "closed",
+        EventKind::Opened => "opened",
+        EventKind::Slipped => "slipped",
+        EventKind::Stuck => "stuck",
+        EventKind::Broke => "broke",
+    };
+    Record::new().with("kind", kind).with("constraint", event.constraint.as_str()).with("time", event.time)
 }
 
 pub(crate) fn projection(projection: &qhat::Projection) -> Projection {

@@ -158,6 +158,16 @@ export interface Energy {
   balance: number;
 }
 
+/** Something that happened at a moment. */
+export interface StepEvent {
+  /** `impact`: it was hit; `closed`, `opened`: it acts, or does not, from now on; `broke`: for good */
+  kind: 'impact' | 'closed' | 'opened' | 'slipped' | 'stuck' | 'broke';
+  /** its name */
+  constraint: string;
+  /** s */
+  time: number;
+}
+
 export interface StepReport {
   substeps: number;
   rejected: number;
@@ -172,6 +182,8 @@ export interface StepReport {
   /** who carried the state; with auto, whom it chose */
   integrator: IntegratorName;
   solver: SolverName;
+  /** what opened, closed, slipped, stuck or broke, in its order */
+  events: StepEvent[];
   /** why auto went over to bdf2; null where it did not */
   too_stiff: string | null;
   warnings: string[];

@@ -154,6 +154,18 @@ pub enum StepError {
         /// The first constraint that switches.
         constraint: String,
     },
+    /// A start beyond what a contact or limit allows: nothing says on which side it belongs, so it is not moved.
+    #[error("at t = {} s {} beyond what `{constraint}` allows: start elsewhere, or change it", shown(*time), beyond(particles, *depth))]
+    Penetrates {
+        /// t [s].
+        time: f64,
+        /// The constraint that is violated most.
+        constraint: String,
+        /// The particles that it names.
+        particles: Vec<String>,
+        /// How far C is below zero [m].
+        depth: f64,
+    },
     /// No positions that satisfy the constraints were found nearby.
     #[error("at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}", shown(*time))]
     NotSatisfied {
@@ -175,6 +187,15 @@ pub enum StepError {
     /// A setting was refused.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+}
+
+/// Who is how far beyond something.
+fn beyond(particles: &[String], depth: f64) -> String {
+    let names: Vec<String> = particles.iter().map(|name| format!("`{name}`")).collect();
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    // What rounds to nothing is shown as it is.
+    let depth = if depth < 1e-6 { format!("{depth:.1e}") } else { shown(depth).to_string() };
+    format!("{} {verb} {depth} m", names.join(" and "))
 }
 
 /// A time as a person reads it: to the nanosecond, without the roundoff of the sums it came from.

@@ -75,7 +75,7 @@ pub use force::{
     Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, Gravity,
     HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
 };
-pub use integrate::{Workspace, project, step};
+pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, Kind, Method, SymmetricMatrix};
 pub use measure::Energy;
 pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};

@@ -3,7 +3,7 @@
 use crate::constraint::Formulation;
 use crate::error::{SettingsError, StepError};
 use crate::force::{Acts, Drag, Force, Gravity, MouseSpring};
-use crate::integrate::{Workspace, check_switches, project, step, step_for};
+use crate::integrate::{Workspace, check_start, check_switches, project, step, step_for};
 use crate::measure::{self, Energy};
 use crate::point::Motion;
 use crate::report::{Projection, StepReport};
@@ -37,10 +37,10 @@ impl Simulation {
     /// [`Simulation::projection`] says what that took.
     ///
     /// # Errors
-    /// Settings out of range; constraints that no positions near by satisfy.
+    /// Settings out of range; constraints that no positions near by satisfy; a start beyond what a contact or limit allows; an
+    /// integrator that finds no events where there are some.
     pub fn new(system: System, state: State, settings: Settings) -> Result<Self, StepError> {
         settings.check()?;
-        check_switches(&system, &settings)?;
         let mut simulation = Simulation {
             workspace: Workspace::new(&system),
             start: state.clone(),
@@ -59,9 +59,11 @@ impl Simulation {
 
     fn begin(&mut self) -> Result<(), StepError> {
         self.projection = Projection::default();
+        check_switches(&self.system, &self.settings)?;
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
+        check_start(&self.system, &self.state, &self.settings)?;
         self.energy_floor = ENERGY_FLOOR * measure::energy_scale(&self.system, &self.state);
         let energy = self.energy();
         self.balance = energy.balance();

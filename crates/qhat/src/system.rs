@@ -377,6 +377,14 @@ impl SystemBuilder {
         self.particles[particle.0].mass
     }
 
+    /// The name of a particle that was added.
+    ///
+    /// # Panics
+    /// Where there is none with this id.
+    pub fn name(&self, particle: ParticleId) -> &str {
+        &self.particles[particle.0].name
+    }
+
     /// Adds a constraint under a name that reports will use.
     pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> &mut Self {
         self.constraints.push((name.into(), constraint.into()));

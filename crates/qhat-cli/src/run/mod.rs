@@ -1,5 +1,6 @@
 //! `qhat run`: from a scene to a trajectory and a summary.
 
+mod events;
 mod frames;
 mod interrupt;
 mod origin;
@@ -27,6 +28,8 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let source = Source::read(&arguments.scene)?;
     let scene = source.load().map_err(Failure::formatted)?;
     let settings = settings(arguments, scene.settings)?;
+    // An integrator that the scene did not choose may find no events.
+    qhat::check_start(&scene.system, &scene.state, &settings).map_err(Failure::input)?;
     let frames = Frames::new(arguments.duration.unwrap_or(scene.duration), arguments.frames, &settings)?;
     let target = arguments.output.as_deref().map(|path| Target::new(path, arguments.force)).transpose()?;
     let output = target.as_ref().map(|target| target.path().display().to_string());

@@ -104,7 +104,9 @@ impl Origin {
                 (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
-            Some(Stop::Error(error @ StepError::NotSatisfied { .. })) => (Status::Infeasible, Some(error.to_string())),
+            Some(Stop::Error(error @ (StepError::NotSatisfied { .. } | StepError::Penetrates { .. }))) => {
+                (Status::Infeasible, Some(error.to_string()))
+            }
             Some(Stop::Error(error)) => (Status::Diverged, Some(error.to_string())),
         };
         Ok(())

@@ -1,5 +1,6 @@
 //! What a run tells at its end.
 
+use super::events::Events;
 use super::origin::{Origin, Status};
 use crate::failure::Failure;
 use crate::print::{self, count, small};
@@ -28,6 +29,7 @@ pub(crate) struct Tally {
     worst_budget: Option<(usize, f64)>,
     /// Who carried how many frames by which path, the first who did first.
     carried: Vec<Carried>,
+    events: Events,
 }
 
 /// Frames that one integrator carried by one path to the multipliers.
@@ -63,6 +65,7 @@ impl Tally {
         self.max_residual = self.max_residual.max(report.max_residual);
         self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
         self.carry(report.integrator, report.solver);
+        report.events.iter().for_each(|event| self.events.note(event));
         report.warnings.iter().for_each(|warning| self.warn(warning));
     }
 
@@ -106,6 +109,7 @@ pub(crate) struct Summary<'a> {
     scene: &'a str,
     integrator: &'a str,
     carried: &'a [Carried],
+    events: &'a Events,
     h: f64,
     duration: f64,
     time_reached: f64,
@@ -131,6 +135,7 @@ impl<'a> Summary<'a> {
             scene: &origin.scene,
             integrator: origin.integrator,
             carried: &tally.carried,
+            events: &tally.events,
             h: origin.h,
             duration: origin.duration,
             time_reached: origin.time_reached,
@@ -186,6 +191,7 @@ impl<'a> Summary<'a> {
         if let Some(carriers) = self.carriers() {
             lines.insert(2, ("carried by", carriers));
         }
+        lines.extend(self.events.lines().into_iter().map(|line| ("events", line)));
         if self.start_moved > 0.0 {
             lines.push(("start", format!("moved by up to {:.1e} m, so that every constraint holds", self.start_moved)));
         }

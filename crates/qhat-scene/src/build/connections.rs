@@ -55,6 +55,11 @@ impl Assembly<'_, '_, '_> {
                 Constraint::Sphere(it) => self.add_sphere(it, place),
                 Constraint::Circle(it) => self.add_circle(it, place),
                 Constraint::Curve(it) => self.add_curve(it, place),
+                Constraint::Rope(it) => self.add_rope(it, place),
+                Constraint::Limits(it) => self.add_limits(it, place),
+                Constraint::HalfSpace(it) => self.add_half_space(it, place),
+                Constraint::Ball(it) => self.add_ball(it, place),
+                Constraint::Box(it) => self.add_box(it, place),
             };
         }
     }
@@ -64,23 +69,7 @@ impl Assembly<'_, '_, '_> {
         let length = match &distance.length {
             Some(Driven::Number(length)) => *length,
             Some(driven) => return self.add_driven_rod(distance, driven, (a, b), place),
-            None => {
-                let length = self.distance(a.0, b.0);
-                let [one, other] = distance.between.each_ref().map(|Id(id)| self.report.quoted(id));
-                let complaint = if length == 0.0 {
-                    format!("a rod needs a length, but {one} and {other} start at the same place")
-                } else if !length.is_finite() {
-                    format!("{one} and {other} start too far apart to measure the length of a rod")
-                } else {
-                    String::new()
-                };
-                if !complaint.is_empty() {
-                    let help = "move one of them, or give `length` [m]".to_owned();
-                    self.report.error(place.key("between").span.clone(), complaint, Some(help));
-                    return None;
-                }
-                length
-            }
+            None => self.measured_length("rod", &distance.between, (a, b), place)?,
         };
         let [Id(one), Id(other)] = &distance.between;
         let name = match &distance.id {
@@ -88,8 +77,34 @@ impl Assembly<'_, '_, '_> {
             None => self.free_constraint_name(format!("{one}-{other}")),
         };
         let rod = qhat::Distance::new(a, b, length).with_compliance(distance.compliance, distance.damping);
-        self.builder.constraint(name, qhat::Distance { form: distance.form.into(), ..rod });
+        let Distance { form, breaks_at, .. } = *distance;
+        if breaks_at.is_some() {
+            self.places.insert(name.clone(), place.span.clone());
+        }
+        self.builder.constraint(name, qhat::Distance { form: form.into(), breaks_at, ..rod });
         Some(())
+    }
+
+    /// The distance at the start [m], for a rod or rope whose length is left out.
+    pub(super) fn measured_length(
+        &mut self,
+        what: &str,
+        between: &[Id; 2],
+        (a, b): (ParticleId, ParticleId),
+        place: &Node,
+    ) -> Option<f64> {
+        let length = self.distance(a.0, b.0);
+        let [one, other] = between.each_ref().map(|Id(id)| self.report.quoted(id));
+        let complaint = if length == 0.0 {
+            format!("a {what} needs a length, but {one} and {other} start at the same place")
+        } else if !length.is_finite() {
+            format!("{one} and {other} start too far apart to measure the length of a {what}")
+        } else {
+            return Some(length);
+        };
+        let help = "move one of them, or give `length` [m]".to_owned();
+        self.report.error(place.key("between").span.clone(), complaint, Some(help));
+        None
     }
 
     /// A rod whose length follows the time.
@@ -104,6 +119,12 @@ impl Assembly<'_, '_, '_> {
             let message = "a rod whose length is an expression is rigid and held in the form `length`";
             let help = "leave out `form`, `compliance` and `damping`, or give `length` as a number".to_owned();
             self.report.error(place.key("length").span.clone(), message, Some(help));
+            return None;
+        }
+        if distance.breaks_at.is_some() {
+            let message = "a rod whose length is an expression does not break";
+            let help = "leave out `breaks_at`, or give `length` as a number".to_owned();
+            self.report.error(place.key("breaks_at").span.clone(), message, Some(help));
             return None;
         }
         let radius = self.schedule(length, place.key("length"))?;

@@ -29,17 +29,25 @@ impl Assembly<'_, '_, '_> {
             self.particle(&Id(end.particle.clone()), place.key("particle"));
         }
         for (index, tension) in expect.tension.iter().enumerate() {
-            if !self.constraint_names.contains(&tension.rod) {
-                let message = format!("there is no rod {}", self.report.quoted(&tension.rod));
-                let mut names: Vec<&str> = self.constraint_names.iter().map(String::as_str).collect();
-                names.sort_unstable();
-                let help = match nearest(&tension.rod, names.into_iter()) {
-                    Some(name) => format!("did you mean `{name}`?"),
-                    None => "a rod without `id` is named after its ends, as in `a-b`".to_owned(),
-                };
-                self.report.error(place.key("tension").item(index).key("rod").span.clone(), message, Some(help));
-            }
+            self.check_name("rod", &tension.rod, place.key("tension").item(index).key("rod"));
         }
+        for (index, name) in expect.broken.iter().flatten().enumerate() {
+            self.check_name("constraint", name, place.key("broken").item(index));
+        }
+    }
+
+    fn check_name(&mut self, what: &str, name: &str, place: &Node) {
+        if self.constraint_names.contains(name) {
+            return;
+        }
+        let message = format!("there is no {what} {}", self.report.quoted(name));
+        let mut names: Vec<&str> = self.constraint_names.iter().map(String::as_str).collect();
+        names.sort_unstable();
+        let help = match nearest(name, names.into_iter()) {
+            Some(name) => format!("did you mean `{name}`?"),
+            None => "a rod without `id` is named after its ends, as in `a-b`".to_owned(),
+        };
+        self.report.error(place.span.clone(), message, Some(help));
     }
 
     fn check_watched(&mut self, particle: &str, axis: Axis, place: &Node) {

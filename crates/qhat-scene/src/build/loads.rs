@@ -204,7 +204,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// The particles with these ids, or all that can move.
-    fn those_or_all(&mut self, ids: Option<&[Id]>, place: &Node) -> Option<Vec<ParticleId>> {
+    pub(super) fn those_or_all(&mut self, ids: Option<&[Id]>, place: &Node) -> Option<Vec<ParticleId>> {
         match ids {
             Some(ids) => self.different(ids, place.key("particles")),
             None => Some((0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed).map(ParticleId).collect()),

@@ -3,6 +3,7 @@
 
 mod bodies;
 mod connections;
+mod contacts;
 mod driven;
 mod drives;
 mod expectations;
@@ -28,6 +29,9 @@ use std::ops::Range;
 /// More would fill the memory of a browser before anyone has seen a frame.
 const MOST_PARTICLES: u64 = 1_000_000;
 
+/// Where in the text each constraint is that the engine may still refuse, by its name.
+type Places = HashMap<String, Range<usize>>;
+
 /// A scene while it is put together.
 struct Assembly<'a, 'r, 't> {
     tree: &'a Node,
@@ -42,8 +46,7 @@ struct Assembly<'a, 'r, 't> {
     constraint_names: HashSet<String>,
     /// Forces as expressions, to be tried where the scene starts.
     untried: Vec<Untried>,
-    /// Where in the text a constraint is that the engine may still refuse.
-    places: HashMap<String, Range<usize>>,
+    places: Places,
 }
 
 /// The scene, or `None` after telling what is wrong with it.
@@ -59,7 +62,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         ids: Ids::default(),
         constraint_names: HashSet::new(),
         untried: Vec::new(),
-        places: HashMap::new(),
+        places: Places::new(),
     };
     assembly.add_all(&document)?;
     let Assembly { builder, report, ids, untried, places, .. } = assembly;
@@ -86,6 +89,10 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
     };
     if let Err(error) = settings.check() {
         report.error(tree.key("step").span.clone(), error.to_string(), None);
+        return None;
+    }
+    contacts::check_start(&system, &state, &settings, (tree, &places), report);
+    if !report.is_empty() {
         return None;
     }
     let Document { name, description, expect, .. } = document;
@@ -133,7 +140,7 @@ impl Assembly<'_, '_, '_> {
 }
 
 /// Where to point for what only the engine noticed.
-fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &HashMap<String, Range<usize>>) -> Range<usize> {
+fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &Places) -> Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
         BuildError::Constraint { name, .. } if places.contains_key(name) => places[name].clone(),

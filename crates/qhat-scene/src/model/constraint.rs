@@ -1,5 +1,6 @@
 //! `[[constraints]]` and `[[springs]]`.
 
+use super::contact::{Ball, Box, HalfSpace, Limits, Rope};
 use super::content::{Area, Volume};
 use super::kinds::{CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere};
 use super::linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
@@ -32,6 +33,11 @@ pub(crate) enum Constraint {
     Sphere(Sphere),
     Circle(Circle),
     Curve(Curve),
+    Rope(Rope),
+    Limits(Limits),
+    HalfSpace(HalfSpace),
+    Ball(Ball),
+    Box(Box),
 }
 
 impl Constraint {
@@ -58,6 +64,11 @@ impl Constraint {
             Constraint::Rack(it) => it.id.as_ref(),
             Constraint::Area(it) => it.id.as_ref(),
             Constraint::Volume(it) => it.id.as_ref(),
+            Constraint::Rope(it) => it.id.as_ref(),
+            Constraint::Limits(it) => it.id.as_ref(),
+            Constraint::HalfSpace(it) => it.id.as_ref(),
+            Constraint::Ball(it) => it.id.as_ref(),
+            Constraint::Box(it) => it.id.as_ref(),
             Constraint::Rigid(_) => None,
         }
     }
@@ -87,6 +98,10 @@ pub(crate) struct Distance {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) damping: f64,
+    /// The tension or thrust at which it breaks [N], above 0; none if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at: Option<f64>,
 }
 
 /// The function of a distance that is held at zero.

@@ -32,6 +32,8 @@ pub struct Expect {
     pub at_end: Vec<AtEnd>,
     /// How fast particles are at the end of the duration.
     pub speed_at_end: Vec<SpeedAtEnd>,
+    /// The names of all constraints that are broken at the end of the duration; an empty list says that nothing breaks.
+    pub broken: Option<Vec<String>>,
 }
 
 /// The period of a swing: the mean time from one upward crossing of a coordinate's level to the next.

@@ -3,6 +3,7 @@
 
 pub(crate) mod body;
 mod constraint;
+pub(crate) mod contact;
 mod content;
 mod driven;
 mod expect;

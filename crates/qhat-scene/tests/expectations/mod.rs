@@ -1,7 +1,8 @@
 //! Runs a scene and tells which of its expectations do not hold; what each means is in docs/scene-file.md.
 
-use qhat::{ParticleId, Simulation};
+use qhat::{Event, EventKind, ParticleId, Simulation};
 use qhat_scene::{AtEnd, Axis, Expect, Scene, SpeedAtEnd};
+use std::collections::BTreeSet;
 
 /// Particles up to which lengths are held for long; a larger scene, at tens of milliseconds a frame, for its own duration.
 const MOST_FOR_LONG: usize = 2000;
@@ -22,10 +23,14 @@ pub(crate) fn failures(scene: &Scene, long: f64) -> Vec<String> {
     let mut course = Course::default();
     course.note(&simulation, &expect);
     let mut length_error = 0.0_f64;
+    let mut broken = Vec::new();
     let mut residual = residual_now(&mut simulation, &expect);
     for frame in 1..=frames(end) {
         match simulation.step() {
-            Ok(report) => length_error = length_error.max(report.max_relative_length_error),
+            Ok(report) => {
+                length_error = length_error.max(report.max_relative_length_error);
+                broken.extend(report.events.into_iter().filter(|event| event.kind == EventKind::Broke));
+            }
             Err(error) => {
                 failures.push(error.to_string());
                 return failures;
@@ -39,6 +44,7 @@ pub(crate) fn failures(scene: &Scene, long: f64) -> Vec<String> {
             check_energy(&simulation, &expect, &mut failures);
             check_tension(&mut simulation, &expect, &mut failures);
             check_end(&simulation, &expect, &mut failures);
+            check_broken(&broken, &expect, &mut failures);
         }
     }
     if let Some(most) = expect.max_relative_length_error
@@ -110,6 +116,15 @@ fn check_end(simulation: &Simulation, expect: &Expect, failures: &mut Vec<String
         if (found - value).abs() > *tolerance {
             failures.push(format!("{particle} ended at {found} m/s, expected {value}"));
         }
+    }
+}
+
+fn check_broken(broken: &[Event], expect: &Expect, failures: &mut Vec<String>) {
+    let Some(expected) = &expect.broken else { return };
+    let names = |list: &mut dyn Iterator<Item = &String>| list.cloned().collect::<BTreeSet<String>>();
+    let found = names(&mut broken.iter().map(|event| &event.constraint));
+    if found != names(&mut expected.iter()) {
+        failures.push(format!("broken at the end: {found:?}, expected {expected:?}"));
     }
 }
 

@@ -210,7 +210,7 @@ impl Holds for Distance {
             return Err("a rod with a compliance must be held in the length form".into());
         }
         if self.breaks_at.is_some() && self.compliance > 0.0 {
-            return Err("a rod that gives way cannot break yet; take the compliance out".into());
+            return Err("a rod with a compliance cannot break: leave out one of the two".into());
         }
         super::check_strength(self.breaks_at)
     }

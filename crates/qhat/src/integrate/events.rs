@@ -1,13 +1,7 @@
 //! A pair that stops at events: where a contact closes, opens, begins or ceases to slip, and where something breaks.
 //!
-//! Between events the modes of all contacts stand, and a substep is a substep of the pair. What is watched is a list of margins, each
-//! in units of its own tolerance, all at least −1 while the modes are right:
-//!
-//! ```text
-//! open       C                          closed     λ_n
-//! sticking   μ λ_n − |λ_t|              sliding    slip · direction
-//! breakable  limit − |λ|
-//! ```
+//! Between events the modes of all contacts stand, and a substep is a substep of the pair. What is watched are the margins of
+//! `switching/margins.rs`, all at least −1 while the modes are right.
 //!
 //! A substep at whose end one lies below −1 is tried again with a length at which the first of them is between −1 and 1: bracketed,
 //! and found by the secant through the bracket's ends, kept off both (regula falsi), from the start of the substep every time. So an
@@ -20,16 +14,12 @@ use super::field::{Rows, pack};
 use super::pair::Run;
 use crate::error::StepError;
 use crate::measure::Drift;
-use crate::multiplier::{Beginning, Equation, Friction, Multipliers};
+use crate::multiplier::{Beginning, Friction, Multipliers};
 use crate::point::Motion;
-use crate::report::{Event, EventKind};
-use crate::settings::{Feedback, Settings};
+use crate::report::Event;
+use crate::settings::Feedback;
 use crate::state::State;
-use crate::switching::{Mode, Modes, Moment, Pace, Trigger, still};
-use crate::system::System;
-
-/// Where a force of this part of the largest counts as none.
-const NO_FORCE: f64 = 1e-9;
+use crate::switching::{Mode, Modes, Moment, Pace, TOUCHES, Trigger, first_violated, still, write_margins};
 
 /// How near zero a margin must come that may be on either side of it: it costs an attempt more than 1 would, and leaves the time of
 /// an impact good to 1e-12 of the extent over the speed.
@@ -90,7 +80,7 @@ impl<'a, const D: usize> Switching<'a, D> {
         let (system, settings) = (self.run.system, self.run.settings);
         let workspace = &mut *self.run.field.workspace;
         let pace = Pace {
-            touches: 2.0 * settings.constraint_tolerance,
+            touches: TOUCHES * settings.constraint_tolerance,
             rest: if self.count < BOUNCING { Some(1e-3 * self.frame) } else { None },
             frame: self.frame,
         };
@@ -107,7 +97,7 @@ impl<'a, const D: usize> Switching<'a, D> {
         pack(&workspace.qd, &mut self.run.stages.qd);
         self.run.stages.is_first_known = false;
         self.run.field.is_factored = false;
-        self.note_events(&before, &reaction.impacts, t);
+        self.modes.write_events(&before, &reaction.impacts, (system, t), &mut self.events);
         let equation = &self.run.field.workspace.equation;
         self.beginning.Cd.clone_from(&equation.rows.Cd);
         self.beginning.lambda.clone_from(&equation.lambda);
@@ -122,42 +112,17 @@ impl<'a, const D: usize> Switching<'a, D> {
         Ok(())
     }
 
-    fn note_events(&mut self, before: &Modes, impacts: &[(usize, f64)], time: f64) {
-        let system = self.run.system;
-        let mut note = |place: usize, kind: EventKind| {
-            self.events.push(Event { time, constraint: system.constraints[place].name.clone(), kind });
-        };
-        for &(contact, speed) in impacts {
-            note(system.switches.contacts[contact].constraint, EventKind::Impact { speed });
-        }
-        for (k, contact) in system.switches.contacts.iter().enumerate() {
-            let kind = match (before.contacts[k], self.modes.contacts[k]) {
-                (Mode::Open, Mode::Open) => continue,
-                (Mode::Open, _) => EventKind::Closed,
-                (_, Mode::Open) => EventKind::Opened,
-                (Mode::Sticking, Mode::Sliding(_)) => EventKind::Slipped,
-                (Mode::Sliding(_), Mode::Sticking) => EventKind::Stuck,
-                _ => continue,
-            };
-            note(contact.constraint, kind);
-        }
-        for (k, breakable) in system.switches.breakables.iter().enumerate() {
-            if self.modes.broken[k] && !before.broken[k] {
-                note(breakable.constraint, EventKind::Broke);
-            }
-        }
-    }
-
     /// Tries a substep; its margins are at hand if it is good.
     fn try_length(&mut self, state: &State, h: f64) -> Result<Attempt, Outcome> {
         let equation = &mut self.run.field.workspace.equation;
         equation.friction.prepare::<D>(&self.beginning, &equation.rows, &self.run.system.inverse_mass, h);
         match self.run.attempt(state, h, state.t + h) {
             // Friction had no answer.
-            Outcome::Met(attempt) if attempt.error.is_nan() && !self.friction().is_empty() => {
-                let normal = self.friction().sliding[0].normal;
-                let contact = self.run.system.switches.contacts.iter().find(|contact| contact.normal == normal);
-                Err(Outcome::Failed(self.jammed(contact.map_or(0, |contact| contact.constraint), state.t)))
+            Outcome::Met(attempt) if attempt.error.is_nan() && !self.friction().is_empty() => Err(self.jam(state.t)),
+            Outcome::Failed(StepError::NotSatisfied { residual, .. })
+                if residual.is_nan() && !self.friction().is_empty() =>
+            {
+                Err(self.jam(state.t))
             }
             Outcome::Met(attempt) if attempt.error <= MISSED * self.run.settings.tolerance => {
                 self.write_margins(state.t + h);
@@ -171,8 +136,13 @@ impl<'a, const D: usize> Switching<'a, D> {
         &self.run.field.workspace.equation.friction
     }
 
-    fn jammed(&self, constraint: usize, time: f64) -> StepError {
-        StepError::Jammed { time, constraint: self.run.system.constraints[constraint].name.clone() }
+    /// No friction force was found; of what slides, the first is named.
+    fn jam(&self, time: f64) -> Outcome {
+        let system = self.run.system;
+        let normal = self.friction().sliding[0].normal;
+        let contact = system.switches.contacts.iter().find(|contact| contact.normal == normal);
+        let place = contact.map_or(0, |contact| contact.constraint);
+        Outcome::Failed(StepError::Jammed { time, constraint: system.constraints[place].name.clone() })
     }
 
     fn write_margins(&mut self, t: f64) {
@@ -221,8 +191,9 @@ impl<'a, const D: usize> Switching<'a, D> {
         let mut was_low = false;
         for _ in 0..ATTEMPTS {
             let first = first_violated(&at_high);
+            let is_two_sided = Trigger::of(first, self.modes.contacts.len()).is_two_sided(&self.modes);
             // Aimed at the middle of what is allowed.
-            let aim = if self.is_two_sided(first) { 0.0 } else { 0.5 };
+            let aim = if is_two_sided { 0.0 } else { 0.5 };
             let (g_low, g_high) = ((at_low[first] + aim).max(0.1 * SHARP), at_high[first] + aim);
             // The end that stays for the second time counts half.
             let (g_low, g_high) = if was_low { (g_low, weight * g_high) } else { (weight * g_low, g_high) };
@@ -232,7 +203,7 @@ impl<'a, const D: usize> Switching<'a, D> {
             let is_violated = self.margins.iter().any(|&margin| margin < -1.0);
             // What opens, slips or breaks must be past the point, so that it is not taken back.
             let margin = self.margins[first];
-            let is_there = !is_violated && margin <= if self.is_two_sided(first) { SHARP } else { 0.0 };
+            let is_there = !is_violated && margin <= if is_two_sided { SHARP } else { 0.0 };
             if is_there || high - low < SAME_TIME * self.frame {
                 self.trigger = Some(Trigger::of(first, self.modes.contacts.len()));
                 return Ok((h, attempt));
@@ -248,60 +219,6 @@ impl<'a, const D: usize> Switching<'a, D> {
             }
         }
         Err(Outcome::NotMet)
-    }
-}
-
-impl<const D: usize> Switching<'_, D> {
-    /// Whether a margin may be on either side of zero at its event: where something closes or comes to rest.
-    fn is_two_sided(&self, margin: usize) -> bool {
-        match Trigger::of(margin, self.modes.contacts.len()) {
-            Trigger::Normal(contact) => self.modes.contacts[contact] == Mode::Open,
-            Trigger::Friction(contact) => matches!(self.modes.contacts[contact], Mode::Sliding(_)),
-            Trigger::Break(_) => false,
-        }
-    }
-}
-
-/// The margin that is violated most.
-fn first_violated(margins: &[f64]) -> usize {
-    (1..margins.len()).fold(0, |most, k| if margins[k] < margins[most] { k } else { most })
-}
-
-/// Two margins for each contact and one for each breakable constraint, in units of their tolerances; infinite where there is nothing
-/// to watch.
-fn write_margins(
-    equation: &Equation,
-    system: &System,
-    settings: &Settings,
-    modes: &Modes,
-    slow: f64,
-    margins: &mut Vec<f64>,
-) {
-    let lambda = &equation.lambda;
-    let least = f64::MIN_POSITIVE;
-    let no_force = (NO_FORCE * lambda.iter().fold(0.0_f64, |most, force| most.max(force.abs()))).max(least);
-    let no_slip = slow.max(least);
-    for (contact, mode) in system.switches.contacts.iter().zip(&modes.contacts) {
-        let row = contact.normal;
-        margins.extend(match *mode {
-            Mode::Open => {
-                [equation.gaps.C[row] / (settings.constraint_tolerance * system.row_scale[row]), f64::INFINITY]
-            }
-            Mode::Smooth => [lambda[row] / no_force, f64::INFINITY],
-            Mode::Sticking => {
-                let pull: f64 = contact.tangents.clone().map(|row| lambda[row] * lambda[row]).sum();
-                [lambda[row] / no_force, (contact.friction * lambda[row] - pull.sqrt()) / no_force]
-            }
-            Mode::Sliding(direction) => {
-                let slip = contact.tangents.clone().zip(direction).map(|(row, d)| equation.gaps.Cd[row] * d);
-                [lambda[row] / no_force, slip.sum::<f64>() / no_slip]
-            }
-        });
-    }
-    for (breakable, &broken) in system.switches.breakables.iter().zip(&modes.broken) {
-        let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, f64::max);
-        let margin = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
-        margins.push(if broken { f64::INFINITY } else { margin });
     }
 }
 

@@ -20,6 +20,7 @@ mod rk4;
 mod runge_kutta;
 mod symplectic_euler;
 
+use crate::constraint::Holds;
 use crate::error::StepError;
 use crate::lanes::Lanes;
 use crate::measure::{self, Drift};
@@ -28,7 +29,8 @@ use crate::point::Motion;
 use crate::report::{Projection, StepReport};
 use crate::settings::{Feedback, Integrator, Settings};
 use crate::state::State;
-use crate::system::{System, in_dimension};
+use crate::switching::deepest;
+use crate::system::{NamedConstraint, System, in_dimension};
 
 /// A constraint off by this many times its own size is beyond recognition: what follows would only be larger numbers.
 const DIVERGED: f64 = 1e3;
@@ -160,6 +162,29 @@ pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(),
             Err(StepError::NoEvents { integrator: settings.integrator, constraint })
         }
         _ => Ok(()),
+    }
+}
+
+/// Whether a simulation can start from a state as it is: that the integrator finds the events that there are, and that no contact or
+/// limit is violated by more than it may be off where it holds.
+///
+/// # Errors
+/// [`StepError::NoEvents`]; [`StepError::Penetrates`], of the constraint that is violated most.
+pub fn check_start(system: &System, state: &State, settings: &Settings) -> Result<(), StepError> {
+    check_switches(system, settings)?;
+    let violation = in_dimension!(system.dimension, D => deepest::<D>(system, state, settings.constraint_tolerance));
+    match violation {
+        Some((place, depth)) => {
+            let NamedConstraint { name, constraint, .. } = &system.constraints[place];
+            let particles = constraint.particles().into_iter().map(|id| system.particle_names[id.0].clone());
+            Err(StepError::Penetrates {
+                time: state.t,
+                constraint: name.clone(),
+                particles: particles.collect(),
+                depth,
+            })
+        }
+        None => Ok(()),
     }
 }
 

@@ -16,14 +16,21 @@
 
 mod complementarity;
 mod impact;
+mod margins;
 mod modes;
 mod reaction;
+mod start;
 
 pub(crate) use complementarity::Jam;
 use complementarity::{Touching, settle};
 use impact::{collide, hold};
+pub(crate) use margins::{Trigger, first_violated, write_margins};
 pub(crate) use modes::{Mode, Modes};
-pub(crate) use reaction::{Moment, Pace, Trigger, still};
+pub(crate) use reaction::{Moment, Pace, TOUCHES, still};
+pub(crate) use start::deepest;
+
+#[cfg(test)]
+mod tests;
 
 use crate::constraint::Holds;
 use crate::system::NamedConstraint;

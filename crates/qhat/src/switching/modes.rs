@@ -1,6 +1,8 @@
 //! What every contact is doing, and what is broken.
 
 use super::{Contact, Switches};
+use crate::report::{Event, EventKind};
+use crate::system::System;
 
 /// What a contact is doing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +46,39 @@ impl Modes {
         for (breakable, &broken) in switches.breakables.iter().zip(&self.broken) {
             if broken {
                 off[breakable.rows.clone()].fill(true);
+            }
+        }
+    }
+
+    /// Adds what happened between the modes before and these: impacts, each a contact with its speed [m/s], then what changed.
+    pub(crate) fn write_events(
+        &self,
+        before: &Modes,
+        impacts: &[(usize, f64)],
+        (system, time): (&System, f64),
+        events: &mut Vec<Event>,
+    ) {
+        let Switches { contacts, breakables, .. } = &system.switches;
+        let mut note = |place: usize, kind: EventKind| {
+            events.push(Event { time, constraint: system.constraints[place].name.clone(), kind });
+        };
+        for &(contact, speed) in impacts {
+            note(contacts[contact].constraint, EventKind::Impact { speed });
+        }
+        for (k, contact) in contacts.iter().enumerate() {
+            let kind = match (before.contacts[k], self.contacts[k]) {
+                (Mode::Open, Mode::Open) => continue,
+                (Mode::Open, _) => EventKind::Closed,
+                (_, Mode::Open) => EventKind::Opened,
+                (Mode::Sticking, Mode::Sliding(_)) => EventKind::Slipped,
+                (Mode::Sliding(_), Mode::Sticking) => EventKind::Stuck,
+                _ => continue,
+            };
+            note(contact.constraint, kind);
+        }
+        for (k, breakable) in breakables.iter().enumerate() {
+            if self.broken[k] && !before.broken[k] {
+                note(breakable.constraint, EventKind::Broke);
             }
         }
     }

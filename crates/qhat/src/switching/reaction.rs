@@ -5,7 +5,7 @@
 //! q̇ is projected in the mass metric.
 
 use super::complementarity::{along, size};
-use super::{Jam, Mode, Modes, Touching, collide, hold, settle};
+use super::{Jam, Mode, Modes, Touching, Trigger, collide, hold, settle};
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::settings::Feedback;
@@ -17,27 +17,8 @@ const SAME_WAY: f64 = 0.9995;
 /// What parts slowly is held, which may push something else to close in; more rounds than this are a chain without an end.
 const ROUNDS: usize = 100;
 
-/// What ended a substep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Trigger {
-    /// A margin of the normal row: what is open closes, what is closed opens.
-    Normal(usize),
-    /// A margin of friction: what sticks slips, what slips sticks.
-    Friction(usize),
-    /// What breaks, by its place among the breakable.
-    Break(usize),
-}
-
-impl Trigger {
-    /// Of a place in the list of margins: two for each contact, then one for each breakable.
-    pub(crate) fn of(margin: usize, contacts: usize) -> Self {
-        match margin.checked_sub(2 * contacts) {
-            Some(breakable) => Trigger::Break(breakable),
-            None if margin % 2 == 0 => Trigger::Normal(margin / 2),
-            None => Trigger::Friction(margin / 2),
-        }
-    }
-}
+/// What is open and nearer than this many tolerances touches: twice what a margin may be off at its event.
+pub(crate) const TOUCHES: f64 = 2.0;
 
 /// By what a reaction measures.
 #[derive(Clone, Copy, Debug)]
