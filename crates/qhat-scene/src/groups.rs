@@ -1,7 +1,7 @@
 //! Under which heading a list shows each shipped scene.
 
 /// The headings in their order, each with its scenes. A test holds it to the list of shipped scenes.
-pub(crate) const GROUPS: [(&str, &[&str]); 10] = [
+pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
     (
         "First steps",
         &["pendulum", "double-pendulum", "coupled-pendulums", "hanging-chain", "heavy-end", "net", "web", "classic"],
@@ -16,6 +16,19 @@ pub(crate) const GROUPS: [(&str, &[&str]); 10] = [
     (
         "Curves and surfaces",
         &["cycloid-pendulum", "brachistochrone", "tautochrone", "helix", "rotating-hoop", "conical-pendulum"],
+    ),
+    (
+        "Contacts and ropes",
+        &[
+            "bouncing-balls",
+            "slope",
+            "slack-ropes",
+            "loop-the-loop",
+            "dome",
+            "round-billiards",
+            "overload",
+            "dropped-bridge",
+        ],
     ),
     ("Bodies", &["compound-pendulum", "cube", "middle-axis"]),
     ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "streamer"]),

@@ -128,6 +128,8 @@ impl<'a, const D: usize> Switching<'a, D> {
                 self.write_margins(state.t + h);
                 Ok(attempt)
             }
+            // No substep is so short that friction had an answer.
+            Outcome::NotMet if h < SAME_TIME * self.frame && !self.friction().is_empty() => Err(self.jam(state.t)),
             other => Err(other),
         }
     }

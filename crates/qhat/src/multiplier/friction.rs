@@ -5,12 +5,17 @@
 //! A λ = b − J W F(λ)
 //! ```
 //!
-//! Solved on the factor of A at hand: λ of one pass gives F of the next. One pass is exact where friction presses no contact
-//! (a particle on a slope); elsewhere the error shrinks by what friction of one newton presses contacts with. Where that is one
-//! newton or more there may be no solution at all (Painlevé's paradox), and the passes end without one.
+//! F is linear in the λ_n that slide, x: with the answer g_s of A to the friction of one newton at each of them,
+//!
+//! ```text
+//! A λ⁰ = b,   A g_s = −J W F(e_s),   λ = λ⁰ + Σ g_s x_s,   (I − G) x = λ⁰_n,   G_rs = (g_s) in the normal row of r
+//! ```
+//!
+//! a solve with the factor at hand for each, and a small dense system. Where I − G is singular friction presses its own contact as hard as it is
+//! pressed (Painlevé's paradox), and there is no answer.
 
 use crate::constraint::Rows;
-use crate::point::{add, dot, scaled};
+use crate::point::{add, block, dot, scaled};
 use std::ops::Range;
 
 /// The direction follows the slip where that is this many times what friction changes of it in a substep. What is slower turns at
@@ -47,6 +52,16 @@ impl Sliding {
         (speed / (FAST * self.friction * begin.lambda[self.normal].abs() * w), slip)
     }
 
+    /// Adds F for λ_n.
+    fn add_force<const D: usize>(&self, lambda: f64, rows: &Rows, F: &mut [f64]) {
+        let layout = &rows.J.layout;
+        for (row, d) in self.tangents.clone().zip(self.direction) {
+            for e in layout.start[row]..layout.start[row + 1] {
+                add(F, layout.particle[e], scaled(-self.friction * lambda * d, rows.J.entry::<D>(e)));
+            }
+        }
+    }
+
     /// Turns d to where the contact slips now, in space; in the plane it cannot turn while the mode lasts.
     fn follow(&mut self, rows: &Rows) {
         if self.tangents.len() == 2 && self.turns {
@@ -72,10 +87,13 @@ pub(crate) struct Friction {
     pub(crate) sliding: Vec<Sliding>,
     /// F [N], d·n numbers; empty until something slides.
     pub(crate) force: Vec<f64>,
-    /// b − J W F.
+    /// −J W F(e_s), of the one at hand.
     pub(crate) target: Vec<f64>,
-    /// λ of the pass before.
-    pub(crate) last: Vec<f64>,
+    /// g_s, m numbers each; as many as ever slid at once.
+    pub(crate) answers: Vec<Vec<f64>>,
+    /// I − G, row after row, and λ⁰_n, then x.
+    matrix: Vec<f64>,
+    x: Vec<f64>,
 }
 
 impl Friction {
@@ -108,32 +126,63 @@ impl Friction {
         self.sliding.iter_mut().for_each(|sliding| sliding.follow(rows));
     }
 
-    /// F for λ.
-    pub(crate) fn write_force<const D: usize>(&mut self, rows: &Rows, lambda: &[f64], coordinates: usize) {
+    /// Makes room for so many answers.
+    pub(crate) fn begin(&mut self, count: usize, rows: usize) {
+        self.answers.resize(count.max(self.answers.len()), Vec::new());
+        self.answers.iter_mut().for_each(|answer| answer.resize(rows, 0.0));
+        self.target.resize(rows, 0.0);
+    }
+
+    /// −J W F(e_s): what one newton at s asks of A.
+    pub(crate) fn write_unit<const D: usize>(&mut self, s: usize, rows: &Rows, W: &[f64]) {
         self.force.clear();
-        self.force.resize(coordinates, 0.0);
-        for Sliding { normal, tangents, friction, direction, .. } in &self.sliding {
-            for (row, d) in tangents.clone().zip(direction) {
-                let layout = &rows.J.layout;
-                for e in layout.start[row]..layout.start[row + 1] {
-                    let push = scaled(-friction * lambda[*normal] * d, rows.J.entry::<D>(e));
-                    add(&mut self.force, layout.particle[e], push);
-                }
-            }
+        self.force.resize(rows.J.column_count(), 0.0);
+        self.sliding[s].add_force::<D>(1.0, rows, &mut self.force);
+        let layout = &rows.J.layout;
+        for (row, target) in self.target.iter_mut().enumerate() {
+            let entries = layout.start[row]..layout.start[row + 1];
+            let pull = |e: usize| {
+                let particle = layout.particle[e];
+                W[particle.0] * dot(rows.J.entry::<D>(e), block(&self.force, particle))
+            };
+            *target = -entries.map(pull).sum::<f64>();
         }
     }
 
-    /// b − J W F.
-    pub(crate) fn write_target<const D: usize>(&mut self, rows: &Rows, W: &[f64], b: &[f64]) {
-        self.target.clear();
-        self.target.extend_from_slice(b);
-        let layout = &rows.J.layout;
-        for (row, target) in self.target.iter_mut().enumerate() {
-            for e in layout.start[row]..layout.start[row + 1] {
-                let particle = layout.particle[e];
-                let force = crate::point::block::<D>(&self.force, particle);
-                *target -= W[particle.0] * dot(rows.J.entry::<D>(e), force);
-            }
+    /// From λ⁰ to λ, and F.
+    pub(crate) fn finish<const D: usize>(&mut self, rows: &Rows, lambda: &mut [f64]) {
+        let count = self.sliding.len();
+        self.matrix.clear();
+        for r in &self.sliding {
+            self.matrix.extend(self.answers[..count].iter().map(|g| -g[r.normal]));
         }
+        (0..count).for_each(|k| self.matrix[k * count + k] += 1.0);
+        self.x.clear();
+        self.x.extend(self.sliding.iter().map(|sliding| lambda[sliding.normal]));
+        eliminate(&mut self.matrix, &mut self.x);
+        self.force.fill(0.0);
+        for ((sliding, g), &x) in self.sliding.iter().zip(&self.answers).zip(&self.x) {
+            sliding.add_force::<D>(x, rows, &mut self.force);
+            lambda.iter_mut().zip(g).for_each(|(lambda, g)| *lambda += g * x);
+        }
+    }
+}
+
+/// x ← A⁻¹ x by elimination with the largest pivot of each column; not a number where A is singular. A is small, and lost.
+fn eliminate(A: &mut [f64], x: &mut [f64]) {
+    let n = x.len();
+    for k in 0..n {
+        let pivot = (k + 1..n).fold(k, |best, i| if A[i * n + k].abs() > A[best * n + k].abs() { i } else { best });
+        (0..n).for_each(|j| A.swap(k * n + j, pivot * n + j));
+        x.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = A[i * n + k] / A[k * n + k];
+            (k..n).for_each(|j| A[i * n + j] -= factor * A[k * n + j]);
+            x[i] -= factor * x[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| A[k * n + j] * x[j]).sum();
+        x[k] = (x[k] - known) / A[k * n + k];
     }
 }

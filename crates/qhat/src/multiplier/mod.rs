@@ -106,31 +106,18 @@ impl Equation {
 
     /// λ for the right side at hand, friction of what slides included; where that has no answer λ is not a number.
     pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System, wanted: Multipliers) {
-        /// Friction that presses little converges in a few passes; what takes more than this is next to a paradox.
-        const PASSES: usize = 100;
-        /// Where to stop, relative to the largest λ; and below what it must have come where roundoff stops it before.
-        const ARRIVED: f64 = 1e-13;
-        const NEARLY: f64 = 1e-9;
-        let mut last = f64::INFINITY;
-        self.solver.solve(&system.matrix, &self.b.sum, wanted, &mut self.lambda);
-        if self.friction.is_empty() {
+        let Equation { friction, rows, b, lambda, solver, .. } = self;
+        solver.solve(&system.matrix, &b.sum, wanted, lambda);
+        let count = friction.sliding.len();
+        if count == 0 {
             return;
         }
-        for _ in 0..PASSES {
-            let Equation { friction, rows, b, lambda, solver, .. } = self;
-            friction.write_force::<D>(rows, lambda, system.coordinate_count());
-            friction.write_target::<D>(rows, &system.inverse_mass, &b.sum);
-            friction.last.clone_from(lambda);
-            solver.solve(&system.matrix, &friction.target, wanted, lambda);
-            let largest = lambda.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            let change = lambda.iter().zip(&friction.last).fold(0.0_f64, |most, (x, last)| most.max((x - last).abs()));
-            let is_stuck = change > 0.5 * last && change <= NEARLY * largest;
-            if change <= ARRIVED * largest || is_stuck || !largest.is_finite() {
-                return;
-            }
-            last = change;
+        friction.begin(count, lambda.len());
+        for s in 0..count {
+            friction.write_unit::<D>(s, rows, &system.inverse_mass);
+            solver.solve(&system.matrix, &friction.target, wanted, &mut friction.answers[s]);
         }
-        self.lambda.fill(f64::NAN);
+        friction.finish::<D>(rows, lambda);
     }
 
     /// W (Jᵀλ + F) for λ at hand.

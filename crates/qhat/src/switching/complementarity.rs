@@ -10,19 +10,21 @@
 //!
 //! Method: pivoting. The modes at hand are taken for right, the rows that they leave on are solved, and every contact that
 //! contradicts its mode changes it. Where a set of modes comes back, from then on only the first that contradicts changes (Murty's
-//! rule of the least index), which ends for every positive definite A without friction. With friction there may be no solution, or
+//! rule of the least index), which ends for every positive definite A without friction. With friction the contacts that contradict take
+//! turns, and what would close sticking is tried sliding, too; there may be no solution, or
 //! several (Painlevé): what does not end is told.
 //! Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), chapter 11.
 
 use super::{Contact, Mode, Modes};
 use crate::multiplier::{Equation, Multipliers};
 use crate::system::System;
+use std::ops::Range;
 
 /// What is negative by less than this part of the largest of its kind is roundoff: solutions have some 1e-12 of it.
 const ROUNDOFF: f64 = 1e-10;
 
 /// Passes for each contact that touches, and a few more: what ends at all ends in far fewer.
-const PASSES: usize = 4;
+const PASSES: usize = 8;
 
 /// A contact that touches.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +54,7 @@ pub(crate) fn settle<const D: usize>(
     let mut seen: Vec<Vec<Mode>> = Vec::new();
     let mut is_careful = false;
     let mut last = 0;
-    for _ in 0..PASSES * (touching.len() + 4) {
+    for pass in 0..PASSES * (touching.len() + 4) {
         equation.set_modes(system, modes);
         equation.factor::<D>(system, 0.0);
         equation.solve_multipliers::<D>(system, Multipliers::Force);
@@ -65,11 +67,31 @@ pub(crate) fn settle<const D: usize>(
         last = first;
         is_careful |= seen.contains(&modes.contacts);
         seen.push(modes.contacts.clone());
-        for (contact, mode) in changes.into_iter().take(if is_careful { 1 } else { usize::MAX }) {
-            modes.contacts[contact] = mode;
+        if !is_careful {
+            changes.into_iter().for_each(|(contact, mode)| modes.contacts[contact] = mode);
+            continue;
         }
+        let has_friction = touching.iter().any(|touching| !tangents(system, touching.contact).is_empty());
+        let (contact, mode) = changes[if has_friction { pass % changes.len() } else { 0 }];
+        let closes_sticking = modes.contacts[contact] == Mode::Open && mode == Mode::Sticking;
+        modes.contacts[contact] = if closes_sticking && pass % 3 == 0 {
+            sliding::<D>(equation, system, contact).unwrap_or(mode)
+        } else {
+            mode
+        };
     }
     Err(Jam { contact: last })
+}
+
+fn tangents(system: &System, contact: usize) -> Range<usize> {
+    system.switches.contacts[contact].tangents.clone()
+}
+
+/// The mode in which something open slips the way it goes; `None` if it goes nowhere.
+fn sliding<const D: usize>(equation: &Equation, system: &System, contact: usize) -> Option<Mode> {
+    let slip = along(tangents(system, contact).map(|row| equation.push_along::<D>(row) - equation.b.sum[row]));
+    let size = size(slip);
+    (size > 0.0).then(|| Mode::Sliding(slip.map(|component| component / size)))
 }
 
 /// Every contact that contradicts its mode, with the mode that does not.
