@@ -32,7 +32,7 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
     ),
     ("Bodies", &["compound-pendulum", "cube", "middle-axis"]),
     ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "streamer"]),
-    ("Forces and fields", &["terminal-velocity", "electroscope", "comets", "figure-eight"]),
+    ("Forces and fields", &["elastic-pendulum", "terminal-velocity", "electroscope", "comets", "figure-eight"]),
     ("Large", &["chain-100", "chain-1000", "chain-10000"]),
 ];
 

@@ -48,6 +48,7 @@ pub fn shipped() -> &'static [Shipped] {
             "compound-pendulum",
             "cycloid-pendulum",
             "brachistochrone",
+            "elastic-pendulum",
             "kapitza",
             "helix",
             "double-pendulum",

@@ -3,8 +3,8 @@
 mod systems;
 
 use qhat::{
-    Anchor, Constraint, Curve, Dimension, Direction, Expression, Integrator, OnCircle, OnCurve, OnLine, OnPlane,
-    OnSphere, Particle, ParticleId, Purpose, Relation, Schedule, Scope, Settings, Simulation, State, System,
+    Anchor, Constraint, Curve, Dimension, Direction, Distance, Expression, Integrator, OnCircle, OnCurve, OnLine,
+    OnPlane, OnSphere, Particle, ParticleId, Purpose, Relation, Schedule, Scope, Settings, Simulation, State, System,
 };
 use std::f64::consts::PI;
 use systems::G;
@@ -233,6 +233,58 @@ fn a_bead_on_a_turning_rod_goes_out_as_cosh() {
     let sinh = libm::sinh(2.0);
     // Half of the work is the speed outwards, half the faster turn.
     assert_close("work", simulation.state().work().drives, sinh * sinh, 1e-8);
+}
+
+/// A crank of r turns at ω, a rod of l pushes the slider: x = r cos θ + s with s = √(l² − r² sin² θ), θ = ω t, and
+/// ẍ = −r ω² (cos θ + r cos 2θ/s + r³ sin² θ cos² θ/s³).
+#[test]
+fn a_slider_moves_and_accelerates_as_its_crank_says() {
+    let (r, l, omega) = (0.3, 1.0, 2.0);
+    let mut builder = System::builder(Dimension::Two);
+    let pin = builder.particle(Particle::at("pin", [r, 0.0]).with_velocity([0.0, r * omega]));
+    let slider = builder.particle(Particle::at("slider", [r + l, 0.0]).with_mass(3.0));
+    builder.constraint("crank", Relation::driven(pin, driven("0.3*cos(2*t)", "0.3*sin(2*t)")));
+    builder.constraint("rod", Distance::new(pin, slider, l));
+    builder.constraint("way", OnLine::fixed(slider, [0.0; 3], [1.0, 0.0, 0.0]));
+    builder.force(systems::gravity());
+    let (system, state) = builder.build().unwrap();
+    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Dop853, 0.05)).unwrap();
+    for _ in 0..100 {
+        simulation.step().unwrap();
+        let (sine, cosine) = libm::sincos(omega * simulation.state().time());
+        let s = (l * l - r * r * sine * sine).sqrt();
+        let x = r * cosine + s;
+        let bend = r * (cosine * cosine - sine * sine) / s + (r / s).powi(3) * (sine * cosine).powi(2);
+        // No freedom is left: what projections leave, here times ω² and the like.
+        assert_close("x", simulation.state().positions()[2], x, 1e-10);
+        assert_close("acceleration", simulation.terms().accelerations[2], -r * omega * omega * (cosine + bend), 1e-9);
+    }
+}
+
+/// Down a cycloid to its lowest point a bead takes π √(R/g), and no way is faster: down the straight line to the same point (π R, −2 R) it
+/// takes √((4 + π²) R/g), 1.19 times as long. As the cycloid begins with a cusp, the bead on it is met where s = √(g/R) t = 0.5.
+#[test]
+fn a_cycloid_is_faster_than_the_straight_line() {
+    let r = 0.5;
+    let rate = (G / r).sqrt();
+    let arrive = |place: [f64; 2], velocity: [f64; 2], curve: Curve, duration: f64| {
+        let mut builder = System::builder(Dimension::Two);
+        let particle = builder.particle(Particle::at("bead", place).with_velocity(velocity));
+        builder.constraint("wire", OnCurve { particle, curve }).force(systems::gravity());
+        let (system, state) = builder.build().unwrap();
+        let settings = Settings { tolerance: 1e-12, ..systems::settings(Integrator::Dop853, 0.01) };
+        let mut simulation = Simulation::new(system, state, settings).unwrap();
+        simulation.advance(duration).unwrap();
+        // dop853 keeps 1e-12 a substep.
+        assert_close("x", simulation.state().positions()[0], PI * r, 1e-9);
+        assert_close("y", simulation.state().positions()[1], -2.0 * r, 1e-9);
+    };
+    let (sine, cosine) = libm::sincos(0.5);
+    let cycloid = curve(&["0.5*(s - sin(s))", "0.5*(cos(s) - 1)"], 0.0, 3.5);
+    let velocity = [r * (1.0 - cosine) * rate, -r * sine * rate];
+    arrive([r * (0.5 - sine), r * (cosine - 1.0)], velocity, cycloid, (PI - 0.5) / rate);
+    let straight = Curve::through(&[[0.0; 3], [PI * r, -2.0 * r, 0.0]], false).unwrap();
+    arrive([0.0; 2], [0.0; 2], straight, (4.0 + PI * PI).sqrt() / rate);
 }
 
 /// What each kind refuses, in words.

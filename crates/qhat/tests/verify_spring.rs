@@ -90,6 +90,38 @@ fn spring_sags_by_weight_over_stiffness() {
     assert_eq!(simulation.state().velocities()[3], 0.0);
 }
 
+/// About where it hangs, a pendulum on a spring bounces with √(ks/m) and swings as one on a rod of the length l that it hangs at, with
+/// √(g/l). Its scene, `elastic-pendulum`, takes the first twice the second.
+#[test]
+fn a_pendulum_on_a_spring_bounces_and_swings() {
+    let l = REST + MASS * G / STIFFNESS;
+    let small = 1e-5;
+    let at_quarters = |aside: f64, down: f64, omega: f64| {
+        let mut builder = System::builder(Dimension::Two);
+        let top = builder.particle(Particle::at("top", [0.0; 2]).held());
+        let bob = builder.particle(Particle::at("bob", [aside, -l - down]).with_mass(MASS));
+        builder.force(Spring { a: bob, b: top, stiffness: STIFFNESS, damping: 0.0, rest: REST });
+        builder.force(systems::gravity());
+        let (system, state) = builder.build().unwrap();
+        let settings = Settings { tolerance: 1e-12, ..systems::settings(Integrator::Dop853, 0.01) };
+        let mut simulation = Simulation::new(system, state, settings).unwrap();
+        [1, 2, 3, 4].map(|_| {
+            simulation.advance(std::f64::consts::FRAC_PI_2 / omega).unwrap();
+            let state = simulation.state();
+            [state.positions()[2], -l - state.positions()[3]]
+        })
+    };
+    // In parts of the amplitude: what it adds to the frequencies, of its first order at most as it bends the path, is 1e-5.
+    let cosine = [0.0, -1.0, 0.0, 1.0];
+    let swing = at_quarters(small, 0.0, (G / l).sqrt());
+    let bounce = at_quarters(0.0, small, (STIFFNESS / MASS).sqrt());
+    for (quarter, cosine) in cosine.into_iter().enumerate() {
+        assert_close("aside", swing[quarter][0] / small, cosine, 1e-4);
+        assert_close("down", bounce[quarter][1] / small, cosine, 1e-4);
+        assert_eq!(bounce[quarter][0], 0.0, "nothing pulls it aside");
+    }
+}
+
 /// v = v₀ e^(−kd t/m) under drag alone, and x = v₀ m/kd (1 − e^(−kd t/m)).
 #[test]
 fn drag_slows_a_free_particle_exponentially() {
