@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! degrees of freedom    = coordinates of free particles − rank A
-//! states of self-stress = rows on free particles − rank A
+//! states of self-stress = rows on free particles that take part − rank A
 //! ```
 
 use crate::arguments;
@@ -54,6 +54,8 @@ struct Findings {
     rods: usize,
     rows: usize,
     rows_on_free_particles: usize,
+    /// Of those, how many take no part at the start: contacts that are open.
+    open_rows: usize,
     /// max |C| where the file puts the particles.
     max_residual_at_start: f64,
     worst_row_at_start: Option<String>,
@@ -153,8 +155,8 @@ impl Findings {
         let worst = rigid().max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
         let consistent = worst.is_none_or(|row| relative(row) <= scene.settings.constraint_tolerance);
 
-        // The integrator that projects finds the nearest start at which all holds, and sees A bare of diagonal drag.
-        let settings = Settings { integrator: Integrator::Rattle, ..scene.settings };
+        // An integrator that projects finds the nearest start at which all holds, and sees A bare of diagonal drag; this one takes contacts, too.
+        let settings = Settings { integrator: Integrator::Dop853, ..scene.settings };
         let simulation = Simulation::new(system.clone(), scene.state.clone(), settings);
         let mut warnings: Vec<String> = Vec::new();
         let (terms, moved) = match simulation {
@@ -169,7 +171,9 @@ impl Findings {
 
         let free_particles = terms.inverse_masses.iter().filter(|&&w| w > 0.0).count();
         let coordinates = free_particles * system.dimension();
-        let rows = rigid().filter(|&row| is_on_free_particle(&terms, row)).count();
+        let on_free = || rigid().filter(|&row| is_on_free_particle(&terms, row));
+        let open_rows = on_free().filter(|&row| terms.is_open[row]).count();
+        let rows = on_free().count() - open_rows;
         // Where the constraints cannot hold, the rank is that of no configuration the system can be in.
         let rank = terms.rank.filter(|_| feasible);
         Findings {
@@ -180,7 +184,8 @@ impl Findings {
             free_particles,
             rods: system.rods().count(),
             rows: system.row_count(),
-            rows_on_free_particles: rows,
+            rows_on_free_particles: rows + open_rows,
+            open_rows,
             max_residual_at_start: rigid().fold(0.0, |max: f64, row| max.max(start.residual[row].abs())),
             worst_row_at_start: worst.filter(|_| !consistent).map(|row| system.row_names()[row].clone()),
             consistent_at_start: consistent,
@@ -204,8 +209,9 @@ impl Findings {
             self.free_particles,
             self.dimension
         );
+        let open = if self.open_rows == 0 { String::new() } else { format!(", {} open", self.open_rows) };
         let rows = format!(
-            "{}, {} of them on free particles; {}",
+            "{}, {} of them on free particles{open}; {}",
             count(self.rows, "row"),
             self.rows_on_free_particles,
             count(self.rods, "rod")

@@ -471,8 +471,8 @@ impl SystemBuilder {
             None => Ok(()),
         };
         for (name, constraint) in &self.constraints {
-            let outcome = exists(constraint.particles()).and_then(|()| constraint.check());
-            let outcome = outcome.and_then(|()| constraint.fits(self.dimension.number()));
+            let outcome = exists(constraint.particles()).and_then(|()| constraint.fits(self.dimension.number()));
+            let outcome = outcome.and_then(|()| constraint.check());
             outcome.map_err(|message| BuildError::Constraint { name: name.clone(), message })?;
         }
         for (index, force) in self.forces.iter().enumerate() {

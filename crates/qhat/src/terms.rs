@@ -51,6 +51,8 @@ pub struct Terms {
     pub accelerations: Vec<f64>,
     /// Signed tension of every rod, as applied, positive where it pulls its ends together [N].
     pub tension: Vec<f64>,
+    /// Whether a row takes no part: an open contact, friction that is not needed to hold, what is broken; m.
+    pub is_open: Vec<bool>,
     /// Rank of A; `None` where A is singular and too large for the rank to be counted.
     pub rank: Option<usize>,
     /// What a user should know of this solve.
@@ -148,6 +150,7 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
     let warnings = equation.warnings(system);
     let constraint_matrix =
         in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&equation.rows.J, &system.inverse_mass));
+    let is_open = (0..system.row_count()).map(|row| equation.is_off(row)).collect();
     Terms {
         time: state.t,
         positions: state.q.clone(),
@@ -168,6 +171,7 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         constraint_forces: equation.Q_hat,
         accelerations: equation.qdd,
         tension,
+        is_open,
         rank,
         warnings,
     }
