@@ -378,7 +378,8 @@ const CASES: &[Case] = &[
         &[],
         |_| {
             let rods = rigid_rods(Dimension::Three, &PLACES[..5]).unwrap();
-            let length = |a: usize, b: usize| (0..3).map(|k| (PLACES[a][k] - PLACES[b][k]).powi(2)).sum::<f64>().sqrt();
+            let length =
+                |a: usize, b: usize| (0..3).map(|k| PLACES[a][k] - PLACES[b][k]).map(|x| x * x).sum::<f64>().sqrt();
             rods.into_iter().map(|[a, b]| Distance::new(P[a], P[b], length(a, b)).into()).collect()
         },
         &[
@@ -463,7 +464,10 @@ fn simulation(case: &Case, constraints: Vec<Constraint>, integrator: Integrator)
     }
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {
-            let square = |k: usize| (q[a.0 * d + k] - q[b.0 * d + k]).powi(2);
+            let square = |k: usize| {
+                let along = q[a.0 * d + k] - q[b.0 * d + k];
+                along * along
+            };
             let rest = 0.9 * (0..d).map(square).sum::<f64>().sqrt();
             if rest > 0.0 {
                 builder.force(Spring { a: *a, b: *b, stiffness: 20.0, damping: 0.1, rest });

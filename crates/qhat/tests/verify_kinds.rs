@@ -254,7 +254,7 @@ fn a_slider_moves_and_accelerates_as_its_crank_says() {
         let (sine, cosine) = libm::sincos(omega * simulation.state().time());
         let s = (l * l - r * r * sine * sine).sqrt();
         let x = r * cosine + s;
-        let bend = r * (cosine * cosine - sine * sine) / s + (r / s).powi(3) * (sine * cosine).powi(2);
+        let bend = r * (cosine * cosine - sine * sine) / s + libm::pow(r / s, 3.0) * libm::pow(sine * cosine, 2.0);
         // No freedom is left: what projections leave, here times ω² and the like.
         assert_close("x", simulation.state().positions()[2], x, 1e-10);
         assert_close("acceleration", simulation.terms().accelerations[2], -r * omega * omega * (cosine + bend), 1e-9);

@@ -30,7 +30,7 @@ impl Trigger {
     pub(crate) fn of(margin: usize, contacts: usize) -> Self {
         match margin.checked_sub(2 * contacts) {
             Some(breakable) => Trigger::Break(breakable),
-            None if margin % 2 == 0 => Trigger::Normal(margin / 2),
+            None if margin.is_multiple_of(2) => Trigger::Normal(margin / 2),
             None => Trigger::Friction(margin / 2),
         }
     }
