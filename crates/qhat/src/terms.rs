@@ -88,7 +88,7 @@ const fn row(
 }
 
 /// The symbols of [`Terms`], in the order of its fields.
-pub const NOTATION: [Notation; 20] = [
+pub const NOTATION: [Notation; 21] = [
     row("t", "t", "time", "1", "s", "state.rs"),
     row("q", "q", "positions", "N", "m", "state.rs"),
     row("q̇", "qd", "velocities", "N", "m/s", "state.rs"),
@@ -108,6 +108,7 @@ pub const NOTATION: [Notation; 20] = [
     row("Q̂", "Q_hat", "constraint_forces", "N", "N", "multiplier/reaction.rs"),
     row("q̈", "qdd", "accelerations", "N", "m/s²", "multiplier/reaction.rs"),
     row("T", "tension", "tension", "rods", "N", "constraint/distance.rs"),
+    row("λ off", "off", "is_open", "m", "1", "switching/modes.rs"),
     row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
 ];
 
