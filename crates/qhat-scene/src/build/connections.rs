@@ -30,6 +30,14 @@ impl Assembly<'_, '_, '_> {
         name
     }
 
+    /// The name that the file gives, or else one made from what it is.
+    pub(super) fn name_of(&mut self, given: Option<&Name>, wanted: String) -> String {
+        match given {
+            Some(Name(name)) => name.clone(),
+            None => self.free_constraint_name(wanted),
+        }
+    }
+
     pub(super) fn add_constraints(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
             let place = self.tree.key("constraints").item(index);
@@ -72,10 +80,7 @@ impl Assembly<'_, '_, '_> {
             None => self.measured_length("rod", &distance.between, (a, b), place)?,
         };
         let [Id(one), Id(other)] = &distance.between;
-        let name = match &distance.id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(format!("{one}-{other}")),
-        };
+        let name = self.name_of(distance.id.as_ref(), format!("{one}-{other}"));
         let rod = qhat::Distance::new(a, b, length).with_compliance(distance.compliance, distance.damping);
         let Distance { form, breaks_at, .. } = *distance;
         if breaks_at.is_some() {
@@ -129,10 +134,7 @@ impl Assembly<'_, '_, '_> {
         }
         let radius = self.schedule(length, place.key("length"))?;
         let [Id(one), Id(other)] = &distance.between;
-        let name = match &distance.id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(format!("{one}-{other}")),
-        };
+        let name = self.name_of(distance.id.as_ref(), format!("{one}-{other}"));
         self.builder.constraint(name, qhat::OnSphere::new(a, b, radius));
         Some(())
     }
@@ -141,10 +143,7 @@ impl Assembly<'_, '_, '_> {
         let particle = self.particle(&nail.particle, place.key("particle"))?;
         let start = self.start(particle);
         let point = self.schedules_or(nail.at.as_ref(), place.key("at"), start)?;
-        let name = match &nail.id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(format!("nail({})", nail.particle.0)),
-        };
+        let name = self.name_of(nail.id.as_ref(), format!("nail({})", nail.particle.0));
         if let [Schedule::Constant(x), Schedule::Constant(y), Schedule::Constant(z)] = point {
             self.builder.constraint(name, qhat::Nail { particle, at: [x, y, z], form: nail.form.into() });
         } else if nail.form == NailForm::Vector {

@@ -1,7 +1,7 @@
 //! What is written as expressions. Their errors point into the text of the scene.
 
 use super::Assembly;
-use crate::model::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Name, Parameters, Residual};
+use crate::model::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
 use crate::report::Report;
 use crate::suggest::nearest;
 use crate::tree::{Node, Value};
@@ -36,10 +36,7 @@ impl Assembly<'_, '_, '_> {
             Residual::One(text) => (std::slice::from_ref(text), false),
             Residual::Several(texts) => (&texts[..], true),
         };
-        let name = match &given.id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name("expression".into()),
-        };
+        let name = self.name_of(given.id.as_ref(), "expression".into());
         let place = place.key("residual");
         for (k, text) in texts.iter().enumerate() {
             let place = place.item(k);

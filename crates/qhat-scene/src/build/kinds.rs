@@ -12,10 +12,7 @@ use qhat::{Anchor, Constraint, ParticleId, Purpose, Schedule};
 impl Assembly<'_, '_, '_> {
     /// Adds a constraint under its own name, or one made from what it is.
     fn add_named(&mut self, id: Option<&Name>, wanted: String, constraint: impl Into<Constraint>) {
-        let name = match id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(wanted),
-        };
+        let name = self.name_of(id, wanted);
         self.builder.constraint(name, constraint);
     }
 

@@ -1,7 +1,7 @@
 //! `[[constraints]]` of mechanisms and of what shapes contain.
 
 use super::Assembly;
-use crate::model::{Angle, Area, Gears, Id, LengthRatio, Name, Pulley, Rack, Rigid, Volume};
+use crate::model::{Angle, Area, Gears, Id, LengthRatio, Pulley, Rack, Rigid, Volume};
 use crate::tree::Node;
 use qhat::{Constraint, Distance, Lengths, ParticleId, Schedule, rigid_rods};
 use std::f64::consts::PI;
@@ -26,7 +26,7 @@ impl Assembly<'_, '_, '_> {
         let ends = points.windows(2).map(|pair| [pair[0], pair[1]]);
         let segments: Vec<_> = ends.zip(weights).collect();
         let [Id(first), .., Id(last)] = &pulley.over[..] else { unreachable!("the schema asks for two") };
-        let name = self.name_of(&pulley.id, format!("pulley({first}-{last})"));
+        let name = self.name_of(pulley.id.as_ref(), format!("pulley({first}-{last})"));
         self.add_driven(name, &pulley.length, (place, "length"), |total| Lengths::new(&segments, total).into())
     }
 
@@ -44,7 +44,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let [Id(a), Id(b)] = &lengths.between;
-        let name = self.name_of(&lengths.id, format!("ratio({a}-{b})"));
+        let name = self.name_of(lengths.id.as_ref(), format!("ratio({a}-{b})"));
         self.places.insert(name.clone(), place.span.clone());
         self.builder.constraint(name, Lengths::ratio(ab, cd, ratio));
         Some(())
@@ -84,7 +84,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let [Id(a), Id(b)] = &angle.arm;
-        let name = self.name_of(&angle.id, format!("angle({a}-{b})"));
+        let name = self.name_of(angle.id.as_ref(), format!("angle({a}-{b})"));
         self.add_driven(name, &angle.angle, (place, "angle"), make)
     }
 
@@ -93,7 +93,7 @@ impl Assembly<'_, '_, '_> {
         let [one, other] = [0, 1].map(|wheel| self.arm(&gears.wheels[wheel], wheels.item(wheel)));
         let wheels = [one?, other?];
         let [[Id(a), _], [Id(b), _]] = &gears.wheels;
-        let name = self.name_of(&gears.id, format!("gears({a}-{b})"));
+        let name = self.name_of(gears.id.as_ref(), format!("gears({a}-{b})"));
         let make = |angle: Schedule| qhat::Gears::mesh(wheels, gears.teeth, angle).into();
         self.in_plane(place, "gears mesh")?;
         self.add_driven(name, &gears.angle, (place, "angle"), make)
@@ -110,7 +110,7 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("along").span.clone(), message, Some("as in `along = [1.0, 0.0]`".into()));
             return None;
         }
-        let name = self.name_of(&rack.id, format!("rack({})", rack.particle.0));
+        let name = self.name_of(rack.id.as_ref(), format!("rack({})", rack.particle.0));
         self.add_driven(name, &rack.angle, (place, "angle"), |angle: Schedule| {
             qhat::Gears::rack(pinion, particle, [x, y], rack.radius, angle).into()
         })
@@ -142,7 +142,7 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_area(&mut self, area: &Area, place: &Node) -> Option<()> {
         let corners = self.named(&area.corners, place.key("corners"))?;
         self.in_plane(place, "a polygon keeps its area")?;
-        let name = self.name_of(&area.id, format!("area({})", area.corners[0].0));
+        let name = self.name_of(area.id.as_ref(), format!("area({})", area.corners[0].0));
         self.add_driven(name, &area.area, (place, "area"), |area: Schedule| {
             qhat::Area { corners: corners.clone(), area }.into()
         })
@@ -159,7 +159,7 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.span.clone(), "a surface keeps its volume in three dimensions only", Some(help));
             return None;
         }
-        let name = self.name_of(&volume.id, format!("volume({})", volume.faces[0][0].0));
+        let name = self.name_of(volume.id.as_ref(), format!("volume({})", volume.faces[0][0].0));
         self.add_driven(name, &volume.volume, (place, "volume"), |volume: Schedule| {
             qhat::Volume::new(&faces, volume).into()
         })
@@ -171,13 +171,6 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         Some(())
-    }
-
-    fn name_of(&mut self, given: &Option<Name>, otherwise: String) -> String {
-        match given {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(otherwise),
-        }
     }
 
     /// Two different particles, in order.
