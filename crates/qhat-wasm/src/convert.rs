@@ -143,6 +143,7 @@ pub(crate) fn terms(terms: &qhat::Terms) -> Terms {
         .with("constraint_forces", vector(&terms.constraint_forces))
         .with("accelerations", vector(&terms.accelerations))
         .with("tension", vector(&terms.tension))
+        .with("is_open", list(terms.is_open.iter().copied()))
         .with("rank", rank)
         .with("warnings", strings(&terms.warnings))
         .finish()

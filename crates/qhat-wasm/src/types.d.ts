@@ -224,6 +224,8 @@ export interface Terms {
   accelerations: Float64Array;
   /** N, one per rod, signed: + is pull */
   tension: Float64Array;
+  /** one per row: it takes no part (an open contact, what is broken) */
+  is_open: boolean[];
   /** of A; null where A is singular and too large for the rank to be counted */
   rank: number | null;
   warnings: string[];

@@ -92,7 +92,7 @@ pub const NOTATION: [Notation; 21] = [
     row("t", "t", "time", "1", "s", "state.rs"),
     row("q", "q", "positions", "N", "m", "state.rs"),
     row("q̇", "qd", "velocities", "N", "m/s", "state.rs"),
-    row("W", "W", "inverse_masses", "n", "1/kg", "system.rs"),
+    row("W", "W", "inverse_masses", "n", "1/kg", "system/mod.rs"),
     row("Q", "Q", "applied_forces", "N", "N", "force/mod.rs"),
     row("C", "C", "residual", "m", "[C]", "constraint/rows.rs"),
     row("Ċ", "Cd", "residual_rate", "m", "[C]/s", "constraint/rows.rs"),

@@ -124,6 +124,6 @@ fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
             assert_eq!(restarted, state, "seed {seed}, frame {frame}");
         }
     }
-    // Two of the sixty do, both with friction of 0.7 between rods that lean on each other.
+    // Two of the sixty do; more would be a step back.
     assert!(jammed.len() <= 2, "{jammed:?}");
 }

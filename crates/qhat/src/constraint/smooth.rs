@@ -8,7 +8,7 @@
 //! ```
 //!
 //! So a kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`), and nothing else is
-//! derived by hand. It costs about twice what a row derived by hand does.
+//! derived by hand.
 
 use super::{Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};

@@ -25,7 +25,7 @@ use crate::switching::{Mode, Modes, Moment, Pace, TOUCHES, Trigger, first_violat
 /// an impact good to 1e-12 of the extent over the speed.
 const SHARP: f64 = 0.01;
 
-/// Attempts at one event: the secant needs five to ten, halving forty.
+/// Attempts at one event: the secant needed three to nine where it was watched, halving forty.
 const ATTEMPTS: usize = 60;
 
 /// Where a bracket is this part of the frame, its ends are the same time.

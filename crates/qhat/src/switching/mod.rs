@@ -65,18 +65,15 @@ pub(crate) struct Breakable {
 pub(crate) struct Switches {
     pub(crate) contacts: Vec<Contact>,
     pub(crate) breakables: Vec<Breakable>,
-    /// For each row whether C may be above zero.
-    pub(crate) is_one_sided: Vec<bool>,
 }
 
 impl Switches {
-    pub(crate) fn new(constraints: &[NamedConstraint], rows: usize, dimension: usize) -> Self {
-        let mut switches = Switches { is_one_sided: vec![false; rows], ..Switches::default() };
+    pub(crate) fn new(constraints: &[NamedConstraint], dimension: usize) -> Self {
+        let mut switches = Switches::default();
         for (place, NamedConstraint { constraint, first_row, .. }) in constraints.iter().enumerate() {
             for rows in constraint.contacts(dimension) {
                 let normal = first_row + rows.normal;
                 let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
-                switches.is_one_sided[normal] = true;
                 let (restitution, friction) = (rows.restitution, rows.friction);
                 switches.contacts.push(Contact { constraint: place, normal, tangents, restitution, friction });
             }
