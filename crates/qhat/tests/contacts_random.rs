@@ -3,8 +3,8 @@
 mod systems;
 
 use qhat::{
-    Barrier, Dimension, Distance, Integrator, Limits, Particle, Settings, State, StepError, Surface, System,
-    SystemBuilder, Workspace, step,
+    Barrier, Dimension, Distance, Integrator, Limits, Particle, Settings, State, Surface, System, SystemBuilder,
+    Workspace, step,
 };
 use systems::random::Random;
 use systems::{G, gravity, settings};
@@ -78,7 +78,10 @@ fn lowest(state: &State, d: usize) -> f64 {
         if d == 2 {
             beyond[2] = f64::NEG_INFINITY;
         }
-        let depth = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // The edges of a box are round: a thousandth of its smallest half.
+        let radius = 1e-3 * 0.4;
+        let off = beyond.iter().map(|y| (y + radius).max(0.0)).map(|y| y * y).sum::<f64>().sqrt();
+        let depth = off + beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(-radius);
         lowest = lowest.min(x[1]).min(ball).min(depth);
     }
     lowest
@@ -91,8 +94,8 @@ fn total(report: &qhat::StepReport) -> f64 {
 /// T + V never rises, nothing sinks in, and a fresh workspace at every frame gives the same bits as one that is kept.
 #[test]
 fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
-    let mut jammed = Vec::new();
-    for seed in 0..60 {
+    // Sixty of any kind, and those that once gained energy at an edge, slipped to and fro for ever, or had no answer to friction.
+    for seed in (0..60).chain([212, 281, 460, 492, 610, 612, 682, 932, 1165]) {
         let (system, mut state) = heap(&mut Random::new(seed)).build().unwrap();
         let d = system.dimension();
         let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, FRAME) };
@@ -104,15 +107,8 @@ fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
         let mut restarted = state.clone();
         let mut energy = f64::INFINITY;
         for frame in 0..120 {
-            let report = match step(&system, &mut state, &settings, &mut workspace) {
-                Ok(report) => report,
-                // Friction of this size may have no answer; that it says so is all that is asked.
-                Err(StepError::Jammed { .. }) => {
-                    jammed.push(seed);
-                    break;
-                }
-                Err(error) => panic!("seed {seed}, frame {frame}: {error}"),
-            };
+            let report = step(&system, &mut state, &settings, &mut workspace);
+            let report = report.unwrap_or_else(|error| panic!("seed {seed}, frame {frame}: {error}"));
             let now = total(&report);
             assert!(now - energy < 1e-9 * scale, "seed {seed}, frame {frame}: rose by {:e}", (now - energy) / scale);
             energy = now;
@@ -124,6 +120,4 @@ fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
             assert_eq!(restarted, state, "seed {seed}, frame {frame}");
         }
     }
-    // Two of the sixty do; more would be a step back.
-    assert!(jammed.len() <= 2, "{jammed:?}");
 }

@@ -7,8 +7,11 @@
 //!
 //! half-space  φ = n·x − p                  H = 0
 //! ball        φ = ±(|x − c| − r)           H = ±(I − nnᵀ)/|x − c|       + outside, − inside
-//! box         φ = |max(y, 0)| + min(max_k y_k, 0),  y_k = |x_k − c_k| − half_k;  H ≠ 0 only off a corner or an edge
+//! box         φ = |max(y, 0)| + min(max_k y_k, 0) − ρ,   y_k = |x_k − c_k| − (half_k − ρ);   H ≠ 0 only off a corner or an edge
 //! ```
+//!
+//! ρ, a thousandth of the smallest half, is the radius of the edges and corners of a box. A sharp edge has no normal: what slides over it would
+//! be led round it, or flung off it, by forces without bound. Over a round one it leaves where v² > g ρ, and goes round where it is slower.
 //!
 //! The tangential rows have no positions to hold: sticking is a matter of velocities. Their true γ is ṫ·v, which is zero where
 //! v = 0, the only place where they take part. Friction is Coulomb's: |λ_t| ≤ μ λ_n.
@@ -21,6 +24,9 @@ use crate::linalg::block::{Block, diagonal, outer, plus, zero};
 use crate::point::{Motion, Point, dot, first, first_axis, minus, norm, scaled};
 use crate::stiffness::Stiffness;
 use crate::system::ParticleId;
+
+/// ρ of a box, of its smallest half.
+const ROUND: f64 = 1e-3;
 
 /// A surface with an outside; third components are ignored in two dimensions.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +47,7 @@ pub enum Surface {
         /// Whether the particle stays inside.
         inside: bool,
     },
-    /// A box along the axes that the particle stays out of.
+    /// A box along the axes that the particle stays out of. Its edges are round, with a thousandth of the smallest half for their radius.
     Box {
         /// [m].
         centre: [f64; 3],
@@ -108,27 +114,29 @@ fn from_point<const D: usize>(d: Point<D>) -> Near<D> {
 }
 
 fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
+    let rho = ROUND * half.iter().copied().fold(f64::INFINITY, f64::min);
     let sign: Point<D> = d.map(|d| if d < 0.0 { -1.0 } else { 1.0 });
-    let y: Point<D> = std::array::from_fn(|k| d[k].abs() - half[k]);
-    let beyond = y.iter().filter(|&&y| y > 0.0).count();
-    if beyond > 1 {
-        // Off a corner or an edge: as from a point on it.
-        return from_point(std::array::from_fn(|k| sign[k] * y[k].max(0.0)));
-    }
-    let nearest = (1..D).fold(0, |nearest, k| if y[k] > y[nearest] { k } else { nearest });
-    let n = std::array::from_fn(|k| if k == nearest { sign[k] } else { 0.0 });
-    Near { phi: y[nearest], n, H: zero() }
+    let y: Point<D> = std::array::from_fn(|k| d[k].abs() - (half[k] - rho));
+    let near = if y.iter().filter(|&&y| y > 0.0).count() > 1 {
+        // Off a corner or an edge: as from a point.
+        from_point(std::array::from_fn(|k| sign[k] * y[k].max(0.0)))
+    } else {
+        let nearest = (1..D).fold(0, |nearest, k| if y[k] > y[nearest] { k } else { nearest });
+        let n = std::array::from_fn(|k| if k == nearest { sign[k] } else { 0.0 });
+        Near { phi: y[nearest], n, H: zero() }
+    };
+    Near { phi: near.phi - rho, ..near }
 }
 
 /// Unit vectors along the surface: in the plane n turned by a quarter, in space two that are orthogonal, without a jump but
-/// where n_z changes sign. Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
+/// where n_z passes −0.9 (zero would do for a unit vector, but is where everything that moves in the plane lies). Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
 fn tangents<const D: usize>(n: Point<D>) -> [Point<D>; 2] {
     if D == 2 {
         let along = std::array::from_fn(|k| if k == 0 { -n[1] } else { n[0] });
         return [along, [0.0; D]];
     }
     let (x, y, z) = (n[0], n[1], n[2 % D]);
-    let sign = if z < 0.0 { -1.0 } else { 1.0 };
+    let sign = if z < -0.9 { -1.0 } else { 1.0 };
     let a = -1.0 / (sign + z);
     let b = x * y * a;
     let (one, other) = ([1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]);

@@ -166,7 +166,9 @@ impl<'a> Frame<'a> {
             let report = &mut self.report;
             report.substeps += 1;
             report.iterations += attempt.iterations;
-            report.smallest_substep = report.smallest_substep.min(h);
+            if h > 0.0 {
+                report.smallest_substep = report.smallest_substep.min(h);
+            }
             report.max_residual = report.max_residual.max(drift.residual);
             report.max_residual_rate = report.max_residual_rate.max(drift.residual_rate);
             report.max_relative_length_error = report.max_relative_length_error.max(drift.relative_length);

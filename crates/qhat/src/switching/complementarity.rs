@@ -10,21 +10,24 @@
 //!
 //! Method: pivoting. The modes at hand are taken for right, the rows that they leave on are solved, and every contact that
 //! contradicts its mode changes it. Where a set of modes comes back, from then on only the first that contradicts changes (Murty's
-//! rule of the least index), which ends for every positive definite A without friction. With friction the contacts that contradict take
-//! turns, and what would close sticking is tried sliding, too; there may be no solution, or
-//! several (Painlevé): what does not end is told.
+//! rule of the least index), which ends for every positive definite A without friction. With friction it need not end, though it nearly
+//! always does and then takes a few passes; where it does not, `cones.rs` proposes modes to go on from. There may be no solution, or several (Painlevé):
+//! what does not end is told.
 //! Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), chapter 11.
 
-use super::{Contact, Mode, Modes};
+use super::cones::propose;
+use super::{Contact, Mode, Modes, SAME_WAY};
 use crate::multiplier::{Equation, Multipliers};
 use crate::system::System;
-use std::ops::Range;
 
 /// What is negative by less than this part of the largest of its kind is roundoff: solutions have some 1e-12 of it.
 const ROUNDOFF: f64 = 1e-10;
 
 /// Passes for each contact that touches, and a few more: what ends at all ends in far fewer.
 const PASSES: usize = 8;
+
+/// How often directions of slip are aligned: each time brings them nearer by the part that friction has in the slip.
+const ALIGNMENTS: usize = 10;
 
 /// A contact that touches.
 #[derive(Clone, Copy, Debug)]
@@ -51,10 +54,25 @@ pub(crate) fn settle<const D: usize>(
     modes: &mut Modes,
     touching: &[Touching],
 ) -> Result<(), Jam> {
+    let jam = match turn::<D>(equation, system, modes, touching) {
+        Ok(()) => return Ok(()),
+        Err(jam) => jam,
+    };
+    *modes = propose::<D>(equation, system, modes, touching).ok_or(jam)?;
+    turn::<D>(equation, system, modes, touching)
+}
+
+/// Changes modes until none contradicts.
+fn turn<const D: usize>(
+    equation: &mut Equation,
+    system: &System,
+    modes: &mut Modes,
+    touching: &[Touching],
+) -> Result<(), Jam> {
     let mut seen: Vec<Vec<Mode>> = Vec::new();
     let mut is_careful = false;
-    let mut last = 0;
-    for pass in 0..PASSES * (touching.len() + 4) {
+    let (mut last, mut aligned) = (0, 0);
+    for _ in 0..PASSES * (touching.len() + 4) {
         equation.set_modes(system, modes);
         equation.factor::<D>(system, 0.0);
         equation.solve_multipliers::<D>(system, Multipliers::Force);
@@ -63,35 +81,29 @@ pub(crate) fn settle<const D: usize>(
         }
         equation.write_push::<D>(system);
         let changes = contradictions::<D>(equation, system, modes, touching);
-        let Some(&(first, _)) = changes.first() else { return Ok(()) };
+        let Some(&(first, mode)) = changes.first() else {
+            if aligned < ALIGNMENTS && align::<D>(equation, system, modes, touching) {
+                aligned += 1;
+                continue;
+            }
+            return Ok(());
+        };
         last = first;
         is_careful |= seen.contains(&modes.contacts);
         seen.push(modes.contacts.clone());
-        if !is_careful {
-            changes.into_iter().for_each(|(contact, mode)| modes.contacts[contact] = mode);
-            continue;
-        }
-        let has_friction = touching.iter().any(|touching| !tangents(system, touching.contact).is_empty());
-        let (contact, mode) = changes[if has_friction { pass % changes.len() } else { 0 }];
-        let closes_sticking = modes.contacts[contact] == Mode::Open && mode == Mode::Sticking;
-        modes.contacts[contact] = if closes_sticking && pass % 3 == 0 {
-            sliding::<D>(equation, system, contact).unwrap_or(mode)
+        if is_careful {
+            modes.contacts[first] = mode;
         } else {
-            mode
-        };
+            changes.into_iter().for_each(|(contact, mode)| modes.contacts[contact] = mode);
+        }
     }
     Err(Jam { contact: last })
 }
 
-fn tangents(system: &System, contact: usize) -> Range<usize> {
-    system.switches.contacts[contact].tangents.clone()
-}
-
-/// The mode in which something open slips the way it goes; `None` if it goes nowhere.
-fn sliding<const D: usize>(equation: &Equation, system: &System, contact: usize) -> Option<Mode> {
-    let slip = along(tangents(system, contact).map(|row| equation.push_along::<D>(row) - equation.b.sum[row]));
-    let size = size(slip);
-    (size > 0.0).then(|| Mode::Sliding(slip.map(|component| component / size)))
+/// What of w is roundoff.
+fn small_gap(equation: &Equation, system: &System, touching: &[Touching]) -> f64 {
+    let rows = touching.iter().map(|touching| system.switches.contacts[touching.contact].normal);
+    ROUNDOFF * rows.map(|row| equation.b.sum[row].abs()).fold(0.0, f64::max)
 }
 
 /// Every contact that contradicts its mode, with the mode that does not.
@@ -103,8 +115,7 @@ fn contradictions<const D: usize>(
 ) -> Vec<(usize, Mode)> {
     let lambda = &equation.lambda;
     let small_force = ROUNDOFF * lambda.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-    let rows = touching.iter().map(|touching| system.switches.contacts[touching.contact].normal);
-    let small_gap = ROUNDOFF * rows.map(|row| equation.b.sum[row].abs()).fold(0.0, f64::max);
+    let small_gap = small_gap(equation, system, touching);
     // w of one row.
     let opening = |row: usize| equation.push_along::<D>(row) - equation.b.sum[row];
     let mut changes = Vec::new();
@@ -137,6 +148,26 @@ fn contradictions<const D: usize>(
         changes.extend(changed.map(|mode| (place, mode)));
     }
     changes
+}
+
+/// Turns what begins to slip, or slips after an impact, to where it goes; whether anything turned. In space friction on one contact moves
+/// others, so that a slip need not be against the force that held it.
+fn align<const D: usize>(equation: &Equation, system: &System, modes: &mut Modes, touching: &[Touching]) -> bool {
+    let small = small_gap(equation, system, touching);
+    let mut turned = false;
+    for &Touching { contact, .. } in
+        touching.iter().filter(|touching| D == 3 && (touching.may_stick || touching.slip.is_none()))
+    {
+        let Mode::Sliding(direction) = modes.contacts[contact] else { continue };
+        let rows = system.switches.contacts[contact].tangents.clone();
+        let slipping = along(rows.map(|row| equation.push_along::<D>(row) - equation.b.sum[row]));
+        let size = size(slipping);
+        if size > small && slipping[0] * direction[0] + slipping[1] * direction[1] < SAME_WAY * size {
+            modes.contacts[contact] = Mode::Sliding(slipping.map(|component| component / size));
+            turned = true;
+        }
+    }
+    turned
 }
 
 /// Up to two numbers of tangential rows; the second is zero in the plane.

@@ -4,14 +4,15 @@
 //! q̇⁺ = q̇⁻ + W (Jᵀ Λ + F)                     Λ: impulses [N·s], F those of friction
 //! equations and what is at rest   Ċ⁺ = 0
 //! contacts that touch             Ċ⁺ + e Ċ⁻ ≥ 0,  Λ_n ≥ 0, one of the two zero       (Newton's law of impact)
-//! friction                        no slip after, or |Λ_t| = μ Λ_n against the slip before
+//! friction                        no slip after, or |Λ_t| = μ Λ_n against the slip after
 //! ```
 //!
 //! so A Λ = b with b = −(1 + e) Ċ⁻ where a contact closes in and −Ċ elsewhere: the problem of `complementarity.rs`.
 //!
-//! Newton's law can gain energy where several contacts meet, or one with friction (Kane's pendulum). An impact that would is taken
-//! without giving back, e = 0, which never gains.
+//! Newton's law can gain energy where several contacts meet, or one with friction (Kane's pendulum), and what is wedged cannot bounce off
+//! both sides. Such an impact is taken without giving back, e = 0, which never gains and always has an answer.
 
+use super::cones::propose;
 use super::{Jam, Modes, Touching, settle};
 use crate::multiplier::{Equation, Multipliers};
 use crate::point::{block, dot};
@@ -47,14 +48,17 @@ pub(crate) fn collide<const D: usize>(
                 bounces |= contact.restitution > 0.0;
             }
         }
-        settle::<D>(equation, system, modes, touching)?;
+        let outcome = settle::<D>(equation, system, modes, touching);
         let after: Vec<f64> = qd.iter().zip(&equation.push).map(|(v, push)| v + push).collect();
         let lost = before - kinetic::<D>(system, &after);
-        if !bounces || lost >= -ROUNDOFF * before {
-            qd.copy_from_slice(&after);
-            return Ok(lost);
+        match outcome {
+            Err(jam) if !bounces => return Err(jam),
+            Ok(()) if !bounces || lost >= -ROUNDOFF * before => {
+                qd.copy_from_slice(&after);
+                return Ok(lost);
+            }
+            _ => is_bouncing = false,
         }
-        is_bouncing = false;
     }
 }
 
@@ -69,6 +73,48 @@ pub(crate) fn hold<const D: usize>(equation: &mut Equation, system: &System, qd:
     equation.write_impulse::<D>(system);
     qd.iter_mut().zip(&equation.push).for_each(|(v, push)| *v += push);
     before - kinetic::<D>(system, qd)
+}
+
+/// What a force of friction without an answer does to q̇: an impulse without a collision. Friction that presses its own contact harder
+/// than it is pressed (Painlevé) stops the slip in no time. As impulses over a time τ there is always an answer,
+///
+/// ```text
+/// A Λ = b,   b = −Ċ − τ (γ + J W Q)
+/// ```
+///
+/// and its modes say what stops; τ then counts for nothing. b must be that of the forces. Returns the energy lost [J].
+/// Source: Génot, Brogliato, New Results on Painlevé Paradoxes (1999).
+pub(crate) fn shock<const D: usize>(
+    equation: &mut Equation,
+    system: &System,
+    modes: &mut Modes,
+    touching: &[Touching],
+    tau: f64,
+    qd: &mut [f64],
+) -> Result<f64, Jam> {
+    let jam = Jam { contact: touching.first().map_or(0, |touching| touching.contact) };
+    let before = kinetic::<D>(system, qd);
+    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
+        *b = tau * *b - rate;
+    }
+    let during = propose::<D>(equation, system, modes, touching).ok_or(jam)?;
+    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
+        *b = -rate;
+    }
+    equation.set_modes(system, &during);
+    equation.factor::<D>(system, 0.0);
+    equation.solve_multipliers::<D>(system, Multipliers::Force);
+    equation.write_push::<D>(system);
+    let after: Vec<f64> = qd.iter().zip(&equation.push).map(|(v, push)| v + push).collect();
+    let lost = before - kinetic::<D>(system, &after);
+    // Neither an impulse that takes something nor other modes: nothing that could go on.
+    let takes = lost > ROUNDOFF * before;
+    if lost.is_nan() || lost < -ROUNDOFF * before || (!takes && during == *modes) {
+        return Err(jam);
+    }
+    *modes = during;
+    qd.copy_from_slice(&after);
+    Ok(lost)
 }
 
 /// T of what can move [J].

@@ -3,11 +3,15 @@
 //! ```text
 //! open       C                          closed     λ_n
 //! sticking   μ λ_n − |λ_t|              sliding    slip · direction
-//! breakable  limit − |λ|
+//! breakable  limit − |λ|                any closed one: by how much its normal has turned since the substep began
 //! ```
+//!
+//! A normal turns at once where a contact slides over an edge; projected onto C = 0 beyond it, the motion would be bent round the edge.
 
 use super::{Mode, Modes};
+use crate::constraint::Rows;
 use crate::multiplier::Equation;
+use crate::point::{Point, dot};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -21,17 +25,22 @@ pub(crate) enum Trigger {
     Normal(usize),
     /// A margin of friction: what sticks slips, what slips sticks.
     Friction(usize),
+    /// The normal has turned far, or the directions in which slip is counted.
+    Turn(usize),
     /// What breaks, by its place among the breakable.
     Break(usize),
+    /// No margin: the force of a contact has no answer, or jumps where there is an edge. It is let go for a moment.
+    Singular(usize),
 }
 
 impl Trigger {
-    /// Of a place in the list of margins: two for each contact, then one for each breakable.
+    /// Of a place in the list of margins: three for each contact, then one for each breakable.
     pub(crate) fn of(margin: usize, contacts: usize) -> Self {
-        match margin.checked_sub(2 * contacts) {
-            Some(breakable) => Trigger::Break(breakable),
-            None if margin.is_multiple_of(2) => Trigger::Normal(margin / 2),
-            None => Trigger::Friction(margin / 2),
+        match (margin.checked_sub(3 * contacts), margin % 3) {
+            (Some(breakable), _) => Trigger::Break(breakable),
+            (None, 0) => Trigger::Normal(margin / 3),
+            (None, 1) => Trigger::Friction(margin / 3),
+            (None, _) => Trigger::Turn(margin / 3),
         }
     }
 
@@ -40,7 +49,7 @@ impl Trigger {
         match self {
             Trigger::Normal(contact) => modes.contacts[contact] == Mode::Open,
             Trigger::Friction(contact) => matches!(modes.contacts[contact], Mode::Sliding(_)),
-            Trigger::Break(_) => false,
+            Trigger::Turn(_) | Trigger::Break(_) | Trigger::Singular(_) => false,
         }
     }
 }
@@ -50,14 +59,19 @@ pub(crate) fn first_violated(margins: &[f64]) -> usize {
     (1..margins.len()).fold(0, |most, k| if margins[k] < margins[most] { k } else { most })
 }
 
-/// Two margins for each contact and one for each breakable constraint, in units of their tolerances; infinite where there is nothing
+/// The cosine to which a normal may turn in a substep, and what counts as one of it: no method that follows a smooth surface gets
+/// there.
+const TURNED: f64 = 0.5;
+const FAR: f64 = 0.1;
+
+/// Three margins for each contact and one for each breakable constraint, in units of their tolerances; infinite where there is nothing
 /// to watch.
-pub(crate) fn write_margins(
+pub(crate) fn write_margins<const D: usize>(
     equation: &Equation,
     system: &System,
     settings: &Settings,
     modes: &Modes,
-    slow: f64,
+    (slow, normals): (f64, &Normals),
     margins: &mut Vec<f64>,
 ) {
     let lambda = &equation.lambda;
@@ -66,24 +80,60 @@ pub(crate) fn write_margins(
     let no_slip = slow.max(least);
     for (contact, mode) in system.switches.contacts.iter().zip(&modes.contacts) {
         let row = contact.normal;
-        margins.extend(match *mode {
-            Mode::Open => {
-                [equation.gaps.C[row] / (settings.constraint_tolerance * system.row_scale[row]), f64::INFINITY]
+        let friction = match *mode {
+            Mode::Open if modes.is_gone(contact) => {
+                margins.extend([f64::INFINITY; 3]);
+                continue;
             }
-            Mode::Smooth => [lambda[row] / no_force, f64::INFINITY],
+            Mode::Open => {
+                let gap = equation.gaps.C[row] / (settings.constraint_tolerance * system.row_scale[row]);
+                margins.extend([gap, f64::INFINITY, f64::INFINITY]);
+                continue;
+            }
+            Mode::Smooth => f64::INFINITY,
             Mode::Sticking => {
                 let pull: f64 = contact.tangents.clone().map(|row| lambda[row] * lambda[row]).sum();
-                [lambda[row] / no_force, (contact.friction * lambda[row] - pull.sqrt()) / no_force]
+                (contact.friction * lambda[row] - pull.sqrt()) / no_force
             }
             Mode::Sliding(direction) => {
                 let slip = contact.tangents.clone().zip(direction).map(|(row, d)| equation.gaps.Cd[row] * d);
-                [lambda[row] / no_force, slip.sum::<f64>() / no_slip]
+                slip.sum::<f64>() / no_slip
             }
-        });
+        };
+        let rows = std::iter::once(row).chain(contact.tangents.clone());
+        let turned = rows.map(|row| normals.cosine::<D>(&equation.rows, row)).fold(1.0, f64::min);
+        margins.extend([lambda[row] / no_force, friction, (turned - TURNED) / FAR]);
     }
     for (breakable, &broken) in system.switches.breakables.iter().zip(&modes.broken) {
         let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, f64::max);
         let margin = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
         margins.push(if broken { f64::INFINITY } else { margin });
+    }
+}
+
+/// J where a substep began.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Normals {
+    /// d numbers for each entry of J.
+    entries: Vec<f64>,
+}
+
+impl Normals {
+    pub(crate) fn begin<const D: usize>(&mut self, rows: &Rows) {
+        self.entries.clear();
+        (0..rows.J.layout.particle.len()).for_each(|e| self.entries.extend(rows.J.entry::<D>(e)));
+    }
+
+    /// The cosine between a row of J then and now.
+    fn cosine<const D: usize>(&self, rows: &Rows, row: usize) -> f64 {
+        let entries = rows.J.layout.start[row]..rows.J.layout.start[row + 1];
+        let [mut along, mut then, mut now] = [0.0; 3];
+        for e in entries {
+            let (a, b): (Point<D>, Point<D>) = (std::array::from_fn(|k| self.entries[e * D + k]), rows.J.entry::<D>(e));
+            along += dot(a, b);
+            then += dot(a, a);
+            now += dot(b, b);
+        }
+        along / (then * now).sqrt()
     }
 }

@@ -10,12 +10,14 @@
 //! sliding    normal               λ_t = −μ λ_n (direction of slip), an applied force that follows λ_n
 //! ```
 //!
-//! Between two events no mode changes, and the motion is as smooth as with equations alone. `integrate/events.rs` finds the time of
+//! Between two events no mode changes, and the motion is as smooth as with equations alone. `integrate/events/` finds the time of
 //! each event, `impact.rs` the jump of the velocity, `complementarity.rs` the modes that go on.
 //! Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996).
 
 mod complementarity;
+mod cones;
 mod impact;
+mod lemke;
 mod margins;
 mod modes;
 mod reaction;
@@ -23,8 +25,8 @@ mod start;
 
 pub(crate) use complementarity::Jam;
 use complementarity::{Touching, settle};
-use impact::{collide, hold};
-pub(crate) use margins::{Trigger, first_violated, write_margins};
+use impact::{collide, hold, shock};
+pub(crate) use margins::{Normals, Trigger, first_violated, write_margins};
 pub(crate) use modes::{Mode, Modes};
 pub(crate) use reaction::{Moment, Pace, TOUCHES, still};
 pub(crate) use start::deepest;
@@ -35,6 +37,9 @@ mod tests;
 use crate::constraint::Holds;
 use crate::system::NamedConstraint;
 use std::ops::Range;
+
+/// The cosine above which two directions of slip are one: 0.03 rad.
+const SAME_WAY: f64 = 0.9995;
 
 /// A row that opens and closes, with its rows of friction.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +53,8 @@ pub(crate) struct Contact {
     pub(crate) restitution: f64,
     /// μ.
     pub(crate) friction: f64,
+    /// Its place among what breaks.
+    pub(crate) breakable: Option<usize>,
 }
 
 /// A constraint that breaks.
@@ -71,11 +78,19 @@ impl Switches {
     pub(crate) fn new(constraints: &[NamedConstraint], dimension: usize) -> Self {
         let mut switches = Switches::default();
         for (place, NamedConstraint { constraint, first_row, .. }) in constraints.iter().enumerate() {
+            let breakable = constraint.breaks_at().map(|_| switches.breakables.len());
             for rows in constraint.contacts(dimension) {
                 let normal = first_row + rows.normal;
                 let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
                 let (restitution, friction) = (rows.restitution, rows.friction);
-                switches.contacts.push(Contact { constraint: place, normal, tangents, restitution, friction });
+                switches.contacts.push(Contact {
+                    constraint: place,
+                    normal,
+                    tangents,
+                    restitution,
+                    friction,
+                    breakable,
+                });
             }
             if let Some(limit) = constraint.breaks_at() {
                 let rows = *first_row..first_row + constraint.row_count(dimension);

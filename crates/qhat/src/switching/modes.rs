@@ -36,6 +36,11 @@ impl Modes {
         Modes { contacts: vec![Mode::Open; switches.contacts.len()], broken: vec![false; switches.breakables.len()] }
     }
 
+    /// Whether a contact is broken.
+    pub(crate) fn is_gone(&self, contact: &Contact) -> bool {
+        contact.breakable.is_some_and(|breakable| self.broken[breakable])
+    }
+
     /// Says for each row whether it takes no part.
     pub(crate) fn write_off(&self, switches: &Switches, off: &mut [bool]) {
         off.fill(false);

@@ -5,17 +5,21 @@
 //! q̇ is projected in the mass metric.
 
 use super::complementarity::{along, size};
-use super::{Jam, Mode, Modes, Touching, Trigger, collide, hold, settle};
+use super::{Jam, Mode, Modes, SAME_WAY, Touching, Trigger, collide, hold, settle, shock};
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::settings::Feedback;
 use crate::system::System;
 
-/// The cosine above which two directions of slip are one: 0.03 rad.
-const SAME_WAY: f64 = 0.9995;
-
 /// What parts slowly is held, which may push something else to close in; more rounds than this are a chain without an end.
 const ROUNDS: usize = 100;
+
+/// Where a slip ceases along its direction, what is left of it across, in space, is none if it is this many times slower than what counts
+/// as none: at so slow a slip the direction is that in which it is pulled.
+const STOPS: f64 = 1000.0;
+
+/// τ of a shock, in frames: a time in which nothing else happens.
+const SHOCK: f64 = 1e-3;
 
 /// What is open and nearer than this many tolerances touches: twice what a margin may be off at its event.
 pub(crate) const TOUCHES: f64 = 2.0;
@@ -68,19 +72,23 @@ impl<const D: usize> Moment<'_, D> {
         let mut last = 0;
         for round in 0..ROUNDS {
             self.evaluate();
-            let near = self.near(modes);
+            let near = self.near(modes, trigger);
             let hits = self.hits(modes, &near);
             if !hits.is_empty() {
                 self.collide(modes, &near, &hits, &mut reaction)?;
                 self.evaluate();
             }
-            let asked = self.ask(modes, near, hits.is_empty());
+            let stops = trigger.filter(|_| round == 0);
+            let asked = self.ask(modes, near, hits.is_empty(), stops);
             if round == 0 {
                 self.turn(modes, trigger, slips);
             }
-            let Moment { equation, system, .. } = self;
-            equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
-            settle::<D>(equation, system, modes, &asked)?;
+            let before = modes.clone();
+            if self.settle(modes, &asked).is_err() {
+                *modes = before;
+                reaction.lost += self.shock(modes, asked)?;
+                continue;
+            }
             // What holds from now on must not part, however slowly; what that pushes may close in elsewhere.
             let closed = asked.iter().filter(|touching| modes.contacts[touching.contact].is_closed());
             let parts = |touching: &&Touching| self.rate(touching.contact).abs() > self.slow();
@@ -89,6 +97,22 @@ impl<const D: usize> Moment<'_, D> {
             reaction.lost += hold::<D>(self.equation, self.system, self.qd);
         }
         Err(Jam { contact: last })
+    }
+
+    fn settle(&mut self, modes: &mut Modes, asked: &[Touching]) -> Result<(), Jam> {
+        let Moment { equation, system, .. } = self;
+        equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
+        settle::<D>(equation, system, modes, asked)
+    }
+
+    fn shock(&mut self, modes: &mut Modes, mut asked: Vec<Touching>) -> Result<f64, Jam> {
+        if let Some(touching) = asked.first().filter(|_| asked.iter().all(|touching| touching.slip.is_none())) {
+            return Err(Jam { contact: touching.contact });
+        }
+        asked.iter_mut().for_each(|touching| touching.may_stick = true);
+        let Moment { equation, system, qd, pace, .. } = self;
+        equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
+        shock::<D>(equation, system, modes, &asked, SHOCK * pace.frame, qd)
     }
 
     fn evaluate(&mut self) {
@@ -113,14 +137,11 @@ impl<const D: usize> Moment<'_, D> {
     }
 
     /// Which contacts hold, or touch.
-    fn near(&self, modes: &mut Modes) -> Vec<usize> {
-        let switches = &self.system.switches;
-        let broken = switches.breakables.iter().zip(&modes.broken).filter(|&(_, &broken)| broken);
-        let broken: Vec<usize> = broken.map(|(breakable, _)| breakable.constraint).collect();
+    fn near(&self, modes: &mut Modes, trigger: Option<Trigger>) -> Vec<usize> {
         let mut near = Vec::new();
-        for (place, contact) in switches.contacts.iter().enumerate() {
+        for (place, contact) in self.system.switches.contacts.iter().enumerate() {
             let gap = self.equation.rows.C[contact.normal];
-            if broken.contains(&contact.constraint) {
+            if modes.is_gone(contact) || trigger == Some(Trigger::Singular(place)) {
                 modes.contacts[place] = Mode::Open;
             } else if modes.contacts[place].is_closed()
                 || gap <= self.pace.touches * self.system.row_scale[contact.normal]
@@ -138,11 +159,12 @@ impl<const D: usize> Moment<'_, D> {
         near.iter().copied().filter(closes).collect()
     }
 
-    fn touching(&self, place: usize, may_stick: bool) -> Touching {
+    fn touching(&self, place: usize, may_stick: bool, stops: bool) -> Touching {
         let tangents = &self.system.switches.contacts[place].tangents;
         let slip = along(tangents.clone().map(|row| self.equation.rows.Cd[row]));
         let speed = size(slip);
-        let slip = (speed > self.slow()).then(|| slip.map(|component| component / speed));
+        let slow = if stops { STOPS * self.slow() } else { self.slow() };
+        let slip = (speed > slow).then(|| slip.map(|component| component / speed));
         Touching { contact: place, slip, may_stick: may_stick || slip.is_none() }
     }
 
@@ -150,7 +172,7 @@ impl<const D: usize> Moment<'_, D> {
         let rest_speed = self.rest_speed();
         let speeds = hits.iter().map(|&place| (place, -self.rate(place)));
         reaction.impacts.extend(speeds.filter(|&(_, speed)| speed > rest_speed));
-        let touching: Vec<Touching> = near.iter().map(|&place| self.touching(place, true)).collect();
+        let touching: Vec<Touching> = near.iter().map(|&place| self.touching(place, true, false)).collect();
         let gives_back: Vec<bool> = near.iter().map(|&place| -self.rate(place) > rest_speed).collect();
         let mut during = modes.clone();
         for touching in touching.iter().filter(|touching| hits.contains(&touching.contact)) {
@@ -167,7 +189,7 @@ impl<const D: usize> Moment<'_, D> {
     }
 
     /// What goes apart is open; the rest is asked. What parts so slowly that it would be back at once is asked, too.
-    fn ask(&self, modes: &mut Modes, near: Vec<usize>, is_smooth: bool) -> Vec<Touching> {
+    fn ask(&self, modes: &mut Modes, near: Vec<usize>, is_smooth: bool, trigger: Option<Trigger>) -> Vec<Touching> {
         let rest_speed = self.rest_speed();
         let mut asked = Vec::new();
         for place in near {
@@ -176,7 +198,7 @@ impl<const D: usize> Moment<'_, D> {
                 modes.contacts[place] = Mode::Open;
                 continue;
             }
-            let touching = self.touching(place, false);
+            let touching = self.touching(place, false, trigger == Some(Trigger::Friction(place)));
             let mode = &mut modes.contacts[place];
             match (*mode, touching.slip) {
                 // What slips slowly keeps its direction, however roundoff turns the slip (`multiplier/friction.rs`).

@@ -1,5 +1,6 @@
 //! `settle` against all sets of modes, one after the other.
 
+use super::cones::propose;
 use super::{Mode, Modes, Touching, settle};
 use crate::multiplier::Equation;
 use crate::point::Motion;
@@ -109,6 +110,9 @@ fn it_finds_what_trying_all_sets_finds() {
             );
             assert_eq!(modes.contacts[row].is_closed(), *expected > 0.0, "round {round}, row {row}");
         }
+        // Lemke's method finds the same by another way.
+        let proposed = propose::<3>(&mut equation, &system, &Modes::at_first(&system.switches), &all(m)).unwrap();
+        assert_eq!(proposed, modes, "round {round}");
     }
 }
 

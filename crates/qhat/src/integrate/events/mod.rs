@@ -3,14 +3,13 @@
 //! Between events the modes of all contacts stand, and a substep is a substep of the pair. What is watched are the margins of
 //! `switching/margins.rs`, all at least −1 while the modes are right.
 //!
-//! A substep at whose end one lies below −1 is tried again with a length at which the first of them is between −1 and 1: bracketed,
-//! and found by the secant through the bracket's ends, kept off both (regula falsi), from the start of the substep every time. So an
-//! event is as accurate as the method, whatever its order. A margin that turns negative and back within a substep is seen in the
-//! middle, from the cubic through both ends; what is quicker than that is missed.
+//! A substep at whose end one lies below −1 is tried again with a length at which the first of them is between −1 and 1 (`locate.rs`).
+
+mod locate;
 
 use super::Workspace;
 use super::adaptive::{Attempt, MISSED, Method, Outcome};
-use super::field::{Rows, pack};
+use super::field::{Field, Rows, pack, unpack};
 use super::pair::Run;
 use crate::error::StepError;
 use crate::measure::Drift;
@@ -19,17 +18,17 @@ use crate::point::Motion;
 use crate::report::Event;
 use crate::settings::Feedback;
 use crate::state::State;
-use crate::switching::{Mode, Modes, Moment, Pace, TOUCHES, Trigger, first_violated, still, write_margins};
+use crate::switching::{Mode, Modes, Moment, Normals, Pace, TOUCHES, Trigger, still, write_margins};
 
-/// How near zero a margin must come that may be on either side of it: it costs an attempt more than 1 would, and leaves the time of
-/// an impact good to 1e-12 of the extent over the speed.
-const SHARP: f64 = 0.01;
+/// The length of a substep past a point at which a force is not defined, in frames: ten times what `locate.rs` takes for one time.
+/// What falls that long has not moved.
+const SKIP: f64 = 1e-12;
 
-/// Attempts at one event: the secant needed three to nine where it was watched, halving forty.
-const ATTEMPTS: usize = 60;
+/// A substep shorter than this part of the frame will not do where a longer one did not, because friction has no answer: above `SHORTEST`.
+const NO_ANSWER: f64 = 1e-11;
 
-/// Where a bracket is this part of the frame, its ends are the same time.
-const SAME_TIME: f64 = 1e-13;
+/// The shortest substep for the sake of a slow slip that turns, in frames: it is dissipative whichever way it goes.
+const SLOWEST: f64 = 1e-4;
 
 /// Events of one frame after which nothing bounces any more, and after which they are too many to be real.
 const BOUNCING: usize = 1000;
@@ -45,11 +44,16 @@ pub(super) struct Switching<'a, const D: usize> {
     modes: Modes,
     /// What ends the substep tried last.
     trigger: Option<Trigger>,
+    /// Whether that happens where it began.
+    stays: bool,
+    /// A contact that is let go for one short substep, to come past a point at which its force is not defined.
+    skipped: Option<usize>,
     failure: Option<StepError>,
     margins: Vec<f64>,
     /// Those where the substep begins.
     at_beginning: Vec<f64>,
     beginning: Beginning,
+    normals: Normals,
 }
 
 impl<'a, const D: usize> Switching<'a, D> {
@@ -63,10 +67,13 @@ impl<'a, const D: usize> Switching<'a, D> {
             count: 0,
             modes,
             trigger: None,
+            stays: false,
+            skipped: None,
             failure: None,
             margins: Vec::new(),
             at_beginning: Vec::new(),
             beginning: Beginning::default(),
+            normals: Normals::default(),
         };
         let workspace = &mut *switching.run.field.workspace;
         workspace.q.copy_from_slice(&state.q);
@@ -86,6 +93,9 @@ impl<'a, const D: usize> Switching<'a, D> {
         };
         let before = self.modes.clone();
         let trigger = self.trigger.take();
+        if let Some(Trigger::Singular(contact)) = trigger {
+            self.skipped = Some(contact);
+        }
         let Workspace { equation, q, qd, .. } = workspace;
         let outcome = Moment::<D> { equation, system, q, qd, t, pace }.react(&mut self.modes, trigger);
         let reaction = outcome.map_err(|jam| {
@@ -103,6 +113,7 @@ impl<'a, const D: usize> Switching<'a, D> {
         self.beginning.lambda.clone_from(&equation.lambda);
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
         equation.constrain(system, Motion::<D> { q, qd, t });
+        self.normals.begin::<D>(&equation.rows);
         self.write_margins(t);
         self.at_beginning.clone_from(&self.margins);
         self.count += usize::from(trigger.is_some());
@@ -117,38 +128,36 @@ impl<'a, const D: usize> Switching<'a, D> {
         let equation = &mut self.run.field.workspace.equation;
         equation.friction.prepare::<D>(&self.beginning, &equation.rows, &self.run.system.inverse_mass, h);
         match self.run.attempt(state, h, state.t + h) {
-            // Friction had no answer.
-            Outcome::Met(attempt) if attempt.error.is_nan() && !self.friction().is_empty() => Err(self.jam(state.t)),
-            Outcome::Failed(StepError::NotSatisfied { residual, .. })
-                if residual.is_nan() && !self.friction().is_empty() =>
-            {
-                Err(self.jam(state.t))
-            }
             Outcome::Met(attempt) if attempt.error <= MISSED * self.run.settings.tolerance => {
                 self.write_margins(state.t + h);
                 Ok(attempt)
             }
-            // No substep is so short that friction had an answer.
-            Outcome::NotMet if h < SAME_TIME * self.frame && !self.friction().is_empty() => Err(self.jam(state.t)),
             other => Err(other),
         }
+    }
+
+    /// What slides and has lost its force, if anything slides.
+    fn without_answer(&self) -> Option<Trigger> {
+        let normal = self.friction().sliding.first()?.normal;
+        self.run.system.switches.contacts.iter().position(|contact| contact.normal == normal).map(Trigger::Singular)
+    }
+
+    /// Stays where the substep began; what ends it there happens at once.
+    fn stay(&mut self, state: &State, trigger: Trigger) -> Outcome {
+        self.run.turn_back(state);
+        let Run { field, stages, .. } = &mut self.run;
+        unpack(&stages.q, &mut field.workspace.q);
+        unpack(&stages.qd, &mut field.workspace.qd);
+        (self.trigger, self.stays) = (Some(trigger), true);
+        Outcome::Met(Attempt { h: 0.0, error: 0.0, iterations: 0, dissipation: 0.0, drives: 0.0 })
     }
 
     fn friction(&self) -> &Friction {
         &self.run.field.workspace.equation.friction
     }
 
-    /// No friction force was found; of what slides, the first is named.
-    fn jam(&self, time: f64) -> Outcome {
-        let system = self.run.system;
-        let normal = self.friction().sliding[0].normal;
-        let contact = system.switches.contacts.iter().find(|contact| contact.normal == normal);
-        let place = contact.map_or(0, |contact| contact.constraint);
-        Outcome::Failed(StepError::Jammed { time, constraint: system.constraints[place].name.clone() })
-    }
-
     fn write_margins(&mut self, t: f64) {
-        let Switching { run, modes, margins, frame, .. } = self;
+        let Switching { run, modes, margins, frame, normals, .. } = self;
         let (system, workspace) = (run.system, &mut *run.field.workspace);
         let (equation, motion) = (&mut workspace.equation, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t });
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
@@ -156,71 +165,8 @@ impl<'a, const D: usize> Switching<'a, D> {
             equation.solve(system, motion, &Feedback::NONE, true, Multipliers::Force);
         }
         margins.clear();
-        write_margins(equation, system, run.settings, modes, still(motion.qd, &equation.WQ, *frame), margins);
-    }
-
-    /// Whether something open is closed in the middle of the substep tried last, by the cubic through its ends.
-    fn is_missed(&mut self, h: f64, t: f64) -> bool {
-        let (system, settings, workspace) = (self.run.system, self.run.settings, &mut *self.run.field.workspace);
-        if !self.modes.contacts.contains(&Mode::Open) {
-            return false;
-        }
-        let stages = &*self.run.stages;
-        let coordinates = system.coordinate_count();
-        let mut middle = vec![0.0; stages.q.len() * 8];
-        for (k, middle) in middle.chunks_exact_mut(8).enumerate() {
-            for (lane, x) in middle.iter_mut().enumerate() {
-                let (q, qd) = (stages.q[k].0[lane], stages.qd[k].0[lane]);
-                let (next_q, next_qd) = (stages.next_q[k].0[lane], stages.next_qd[k].0[lane]);
-                *x = 0.5 * (q + next_q) + 0.125 * h * (qd - next_qd);
-            }
-        }
-        let (equation, qd) = (&mut workspace.equation, &workspace.qd);
-        equation.constrain(system, Motion::<D> { q: &middle[..coordinates], qd, t: t + 0.5 * h });
-        let open = system.switches.contacts.iter().zip(&self.modes.contacts).filter(|(_, mode)| !mode.is_closed());
-        let mut rows = open.map(|(contact, _)| contact.normal);
-        let is_missed = rows.any(|row| equation.gaps.C[row] < -settings.constraint_tolerance * system.row_scale[row]);
-        equation.constrain(system, Motion::<D> { q: &workspace.q, qd, t: t + h });
-        is_missed
-    }
-
-    /// The length at which the first margin is met, between 0 and `high`, at which some are not.
-    fn locate(&mut self, state: &State, mut high: f64) -> Result<(f64, Attempt), Outcome> {
-        let mut low = 0.0;
-        let mut at_low = self.at_beginning.clone();
-        let mut at_high = self.margins.clone();
-        let mut weight = 1.0;
-        let mut was_low = false;
-        for _ in 0..ATTEMPTS {
-            let first = first_violated(&at_high);
-            let is_two_sided = Trigger::of(first, self.modes.contacts.len()).is_two_sided(&self.modes);
-            // Aimed at the middle of what is allowed.
-            let aim = if is_two_sided { 0.0 } else { 0.5 };
-            let (g_low, g_high) = ((at_low[first] + aim).max(0.1 * SHARP), at_high[first] + aim);
-            // The end that stays for the second time counts half.
-            let (g_low, g_high) = if was_low { (g_low, weight * g_high) } else { (weight * g_low, g_high) };
-            let middle = if g_low.is_finite() { g_low / (g_low - g_high) } else { 0.5 };
-            let h = low + middle.clamp(1e-3, 1.0 - 1e-3) * (high - low);
-            let attempt = self.try_length(state, h)?;
-            let is_violated = self.margins.iter().any(|&margin| margin < -1.0);
-            // What opens, slips or breaks must be past the point, so that it is not taken back.
-            let margin = self.margins[first];
-            let is_there = !is_violated && margin <= if is_two_sided { SHARP } else { 0.0 };
-            if is_there || high - low < SAME_TIME * self.frame {
-                self.trigger = Some(Trigger::of(first, self.modes.contacts.len()));
-                return Ok((h, attempt));
-            }
-            weight = if is_violated != was_low { 0.5 * weight } else { 1.0 };
-            was_low = !is_violated;
-            if is_violated {
-                high = h;
-                at_high.clone_from(&self.margins);
-            } else {
-                low = h;
-                at_low.clone_from(&self.margins);
-            }
-        }
-        Err(Outcome::NotMet)
+        let slow = still(motion.qd, &equation.WQ, *frame);
+        write_margins::<D>(equation, system, run.settings, modes, (slow, normals), margins);
     }
 }
 
@@ -234,17 +180,28 @@ impl<const D: usize> Method for Switching<'_, D> {
         let slow = still(&state.qd, &equation.WQ, self.frame);
         let slips =
             equation.friction.longest::<D>(&self.beginning, &equation.rows, &self.run.system.inverse_mass, slow);
-        slips.max(1e-6 * self.frame).min(self.run.longest(state))
+        slips.max(SLOWEST * self.frame).min(self.run.longest(state))
     }
 
     fn attempt(&mut self, state: &State, h: f64, _: f64) -> Outcome {
         if let Some(error) = self.failure.take() {
             return Outcome::Failed(error);
         }
-        self.trigger = None;
-        let whole = match self.try_length(state, h) {
-            Ok(whole) => whole,
-            Err(outcome) => return outcome,
+        (self.trigger, self.stays) = (None, false);
+        if let Some(contact) = self.skipped.take() {
+            let h = h.min(SKIP * self.frame);
+            self.trigger = Some(Trigger::Normal(contact));
+            return self.try_length(state, h).map_or_else(|outcome| outcome, Outcome::Met);
+        }
+        let whole = match (self.try_length(state, h), self.without_answer()) {
+            (Ok(whole), _) => whole,
+            (Err(_), Some(trigger)) if h < NO_ANSWER * self.frame => return self.stay(state, trigger),
+            // Shorter ones may have one.
+            (Err(Outcome::Met(attempt)), Some(_)) if attempt.error.is_nan() => return Outcome::NotMet,
+            (Err(Outcome::Failed(StepError::NotSatisfied { residual, .. })), Some(_)) if residual.is_nan() => {
+                return Outcome::NotMet;
+            }
+            (Err(outcome), _) => return outcome,
         };
         if self.margins.iter().any(|&margin| margin < -1.0) {
             return match self.locate(state, h) {
@@ -260,6 +217,10 @@ impl<const D: usize> Method for Switching<'_, D> {
     }
 
     fn keep(&mut self, state: &mut State, h: f64) -> Drift {
+        if self.stays {
+            self.failure = self.react(state, state.t).err();
+            return self.run.field.drift(&self.run.stages.q, &self.run.stages.qd);
+        }
         let drift = self.run.keep(state, h);
         // In their order there is one for each contact that slides.
         let mut sliding = self.run.field.workspace.equation.friction.sliding.iter_mut();
@@ -278,6 +239,7 @@ impl<const D: usize> Method for Switching<'_, D> {
             let outcome = self.react(state, state.t + h);
             self.failure = outcome.err();
         } else {
+            self.normals.begin::<D>(&self.run.field.workspace.equation.rows);
             self.at_beginning.clone_from(&self.margins);
         }
         state.modes.clone_from(&self.modes);

@@ -1,0 +1,105 @@
+//! When an event is: the length of the substep at which the first margin vanishes.
+//!
+//! Bracketed, and found by the secant through the bracket's ends, kept off both (regula falsi), from the start of the substep every
+//! time. So an event is as accurate as the method, whatever its order. A margin that turns negative and back within a substep is seen
+//! in the middle, from the cubic through both ends; what is quicker than that is missed.
+//!
+//! A force that jumps where a contact slides over an edge, or that grows without bound as friction comes near the point from which it
+//! has no answer, brackets a point and no root. The motion goes on from the near end: the contact is let go there for 1e-12 of a
+//! frame, and decided anew beyond.
+
+use super::{Attempt, Outcome, Switching};
+use crate::point::Motion;
+use crate::state::State;
+use crate::switching::{Mode, Trigger, first_violated};
+
+/// How near zero a margin must come that may be on either side of it: it costs an attempt more than 1 would, and leaves the time of
+/// an impact good to 1e-12 of the extent over the speed.
+const SHARP: f64 = 0.01;
+
+/// Attempts at one event: the secant needed three to nine where it was watched, halving forty.
+const ATTEMPTS: usize = 60;
+
+/// Where a bracket is this part of the frame, its ends are the same time.
+const SAME_TIME: f64 = 1e-13;
+
+impl<const D: usize> Switching<'_, D> {
+    /// The length at which the first margin is met, between 0 and `high`, at which some are not.
+    pub(super) fn locate(&mut self, state: &State, mut high: f64) -> Result<(f64, Attempt), Outcome> {
+        let mut low = 0.0;
+        let mut at_low = self.at_beginning.clone();
+        let mut at_high = self.margins.clone();
+        let mut weight = 1.0;
+        let mut was_low = false;
+        for _ in 0..ATTEMPTS {
+            let first = first_violated(&at_high);
+            let trigger = Trigger::of(first, self.modes.contacts.len());
+            let is_two_sided = trigger.is_two_sided(&self.modes);
+            // Where a force jumps to the other side of zero, or its direction jumps.
+            let jump = match trigger {
+                Trigger::Normal(contact) | Trigger::Friction(contact) | Trigger::Turn(contact) if !is_two_sided => {
+                    Some(Trigger::Singular(contact))
+                }
+                _ => None,
+            };
+            // Aimed at the middle of what is allowed.
+            let aim = if is_two_sided { 0.0 } else { 0.5 };
+            let (g_low, g_high) = ((at_low[first] + aim).max(0.1 * SHARP), at_high[first] + aim);
+            // The end that stays for the second time counts half.
+            let (g_low, g_high) = if was_low { (g_low, weight * g_high) } else { (weight * g_low, g_high) };
+            let middle = if g_low.is_finite() { g_low / (g_low - g_high) } else { 0.5 };
+            let h = low + middle.clamp(1e-3, 1.0 - 1e-3) * (high - low);
+            let attempt = self.try_length(state, h)?;
+            let is_violated = self.margins.iter().any(|&margin| margin < -1.0);
+            // What opens, slips or breaks must be past the point, so that it is not taken back.
+            let margin = self.margins[first];
+            let is_there = !is_violated && margin <= if is_two_sided { SHARP } else { 0.0 };
+            if is_there || high - low < SAME_TIME * self.frame {
+                if let Some(jump) = jump.filter(|_| !is_there) {
+                    // Nothing of what lies beyond can be kept.
+                    let attempt =
+                        if low > 0.0 { self.try_length(state, low)? } else { return Err(self.stay(state, jump)) };
+                    self.trigger = Some(jump);
+                    return Ok((low, attempt));
+                }
+                self.trigger = Some(trigger);
+                return Ok((h, attempt));
+            }
+            weight = if is_violated != was_low { 0.5 * weight } else { 1.0 };
+            was_low = !is_violated;
+            if is_violated {
+                high = h;
+                at_high.clone_from(&self.margins);
+            } else {
+                low = h;
+                at_low.clone_from(&self.margins);
+            }
+        }
+        Err(Outcome::NotMet)
+    }
+
+    /// Whether something open is closed in the middle of the substep tried last, by the cubic through its ends.
+    pub(super) fn is_missed(&mut self, h: f64, t: f64) -> bool {
+        let (system, settings, workspace) = (self.run.system, self.run.settings, &mut *self.run.field.workspace);
+        if !self.modes.contacts.contains(&Mode::Open) {
+            return false;
+        }
+        let stages = &*self.run.stages;
+        let coordinates = system.coordinate_count();
+        let mut middle = vec![0.0; stages.q.len() * 8];
+        for (k, middle) in middle.chunks_exact_mut(8).enumerate() {
+            for (lane, x) in middle.iter_mut().enumerate() {
+                let (q, qd) = (stages.q[k].0[lane], stages.qd[k].0[lane]);
+                let (next_q, next_qd) = (stages.next_q[k].0[lane], stages.next_qd[k].0[lane]);
+                *x = 0.5 * (q + next_q) + 0.125 * h * (qd - next_qd);
+            }
+        }
+        let (equation, qd) = (&mut workspace.equation, &workspace.qd);
+        equation.constrain(system, Motion::<D> { q: &middle[..coordinates], qd, t: t + 0.5 * h });
+        let open = system.switches.contacts.iter().zip(&self.modes.contacts).filter(|(_, mode)| !mode.is_closed());
+        let mut rows = open.map(|(contact, _)| contact.normal);
+        let is_missed = rows.any(|row| equation.gaps.C[row] < -settings.constraint_tolerance * system.row_scale[row]);
+        equation.constrain(system, Motion::<D> { q: &workspace.q, qd, t: t + h });
+        is_missed
+    }
+}
