@@ -15,7 +15,15 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
     ("Structures", &["bracket", "bridge-truss", "girder", "tensegrity", "catenary"]),
     (
         "Curves and surfaces",
-        &["cycloid-pendulum", "brachistochrone", "tautochrone", "helix", "rotating-hoop", "conical-pendulum"],
+        &[
+            "cycloid-pendulum",
+            "brachistochrone",
+            "tautochrone",
+            "helix",
+            "bent-wire",
+            "rotating-hoop",
+            "conical-pendulum",
+        ],
     ),
     (
         "Contacts and ropes",

@@ -51,6 +51,7 @@ pub fn shipped() -> &'static [Shipped] {
             "elastic-pendulum",
             "kapitza",
             "helix",
+            "bent-wire",
             "double-pendulum",
             "conical-pendulum",
             "rotating-hoop",

@@ -88,7 +88,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 61] = [
+const BETWEEN_KEYS: [&str; 66] = [
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
@@ -150,6 +150,11 @@ const BETWEEN_KEYS: [&str; 61] = [
     "no plane to be on",
     "is not finite everywhere",
     "needs a radius",
+    "a wire of straight pieces needs",
+    "are at one place, or too far apart",
+    "folds back by 180°",
+    "too large for the corner",
+    "rounds the corners of a wire",
 ];
 
 #[test]

@@ -260,6 +260,11 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_curve(&mut self, it: &Curve, place: &Node) -> Option<()> {
         let particle = self.particle(&it.particle, place.key("particle"))?;
         let curve = match (&it.path, &it.points) {
+            (Some(_), None) if it.radius.is_some() => {
+                let message = "a `radius` rounds the corners of a wire through `points`, but this one is a `path`";
+                self.report.error(place.key("radius").span.clone(), message, Some("leave out `radius`".into()));
+                return None;
+            }
             (Some(path), None) => {
                 let Some([from, to]) = it.range else {
                     if place.get("range").is_some() {
@@ -278,7 +283,10 @@ impl Assembly<'_, '_, '_> {
             }
             (None, Some(points)) => {
                 let points: Vec<_> = points.iter().map(|point| point.padded()).collect();
-                qhat::Curve::through(&points, it.closed)
+                match it.radius {
+                    Some(radius) => qhat::Curve::polyline(&points, radius, it.closed),
+                    None => qhat::Curve::through(&points, it.closed),
+                }
             }
             (given, _) => {
                 self.needs_one(place, "curve", ["path", "points"], given.is_some());
@@ -291,7 +299,8 @@ impl Assembly<'_, '_, '_> {
                 Some(())
             }
             Err(message) => {
-                self.report.error(place.span.clone(), message, None);
+                let span = if it.radius.is_some() { &place.key("points").span } else { &place.span };
+                self.report.error(span.clone(), message, None);
                 None
             }
         }

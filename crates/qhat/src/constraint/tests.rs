@@ -241,7 +241,8 @@ fn rows_of_a_wire_in_space_are_exact_on_it() {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [1.5, 2.0, -0.3], [0.2, 1.6, 0.1], [-0.8, 0.9, 0.5]];
     let spline = Curve::through(&points, true).unwrap();
     let bent = Curve::polyline(&points, 0.3, true).unwrap();
-    let places = [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1), (&bent, 0.5), (&bent, 0.95)];
+    let places =
+        [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1), (&bent, 0.5), (&bent, 0.95)];
     for (curve, at) in places {
         let constraint = Constraint::from(OnCurve { particle: P, curve: curve.clone() });
         let (mut q, qd) = (numbers(PARTICLES * 3, 1), numbers(PARTICLES * 3, 2));
