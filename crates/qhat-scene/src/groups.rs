@@ -11,7 +11,7 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
         &["four-bar", "jansen-leg", "strandbeest", "watt", "peaucellier", "pantograph", "trammel", "trebuchet"],
     ),
     ("Drives and motors", &["crank-slider", "crank-rocker", "robot-arm", "kapitza"]),
-    ("Pulleys and gears", &["atwood", "block-and-tackle", "gears"]),
+    ("Pulleys and gears", &["atwood", "block-and-tackle", "gears", "rack-and-pinion"]),
     ("Structures", &["bracket", "bridge-truss", "girder", "tensegrity", "catenary"]),
     (
         "Curves and surfaces",
@@ -39,7 +39,7 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
         ],
     ),
     ("Bodies", &["compound-pendulum", "cube", "middle-axis"]),
-    ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "streamer"]),
+    ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "air-spring", "drop", "streamer"]),
     ("Forces and fields", &["elastic-pendulum", "terminal-velocity", "electroscope", "comets", "figure-eight"]),
     ("Large", &["chain-100", "chain-1000", "chain-10000"]),
 ];

@@ -88,7 +88,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 66] = [
+const BETWEEN_KEYS: [&str; 68] = [
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
@@ -155,6 +155,8 @@ const BETWEEN_KEYS: [&str; 66] = [
     "folds back by 180°",
     "too large for the corner",
     "rounds the corners of a wire",
+    "of a gas must be positive",
+    "a gas must fill more than nothing",
 ];
 
 #[test]
