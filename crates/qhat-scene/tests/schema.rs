@@ -88,7 +88,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 68] = [
+const BETWEEN_KEYS: [&str; 69] = [
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
@@ -157,6 +157,7 @@ const BETWEEN_KEYS: [&str; 68] = [
     "rounds the corners of a wire",
     "of a gas must be positive",
     "a gas must fill more than nothing",
+    "numbers in space, but has",
 ];
 
 #[test]
