@@ -18,7 +18,7 @@
 
 use crate::point::{Point, dot, minus, norm};
 
-/// A corner that comes nearer to folding back than this [rad] is taken to do so: its arc would be a million times as far from it as round.
+/// A corner that comes nearer to folding back than this [rad] is taken to do so: its arc would lie a million radii away from it.
 const FOLD: f64 = 1e-6;
 /// What the roundings of a corner may take of a straight piece, relative: where two arcs meet it is left with no length.
 const ROUNDING: f64 = 1e-12;
@@ -288,6 +288,27 @@ mod tests {
                     let s = low + (high - low) * f64::from(j) / 2000.0;
                     assert!(norm(away(s)) >= norm(away(foot)) - 1e-14, "{closed} {i} {s}");
                 }
+            }
+        }
+    }
+
+    /// No place of the wire is farther from its polygon than an arc is from a chord of 5°, and straight pieces are drawn in one.
+    #[test]
+    fn what_is_drawn_is_round_and_cuts_no_corner() {
+        let wire = Polyline::new(&BENT, 0.3, false).unwrap();
+        let at = |s: f64| wire.at::<3>(s).map(|[c, _, _]| c);
+        let drawn = wire.drawn();
+        let straight = wire.pieces.iter().filter(|piece| matches!(piece.form, Form::Straight { .. }));
+        for Piece { start, length, .. } in straight {
+            assert!(drawn.windows(2).any(|pair| pair[0] == *start && pair[1] == start + length));
+        }
+        for pair in drawn.windows(2) {
+            let (a, chord) = (at(pair[0]), minus(at(pair[1]), at(pair[0])));
+            for i in 0..10 {
+                let w = minus(at(pair[0] + (pair[1] - pair[0]) * f64::from(i) / 10.0), a);
+                let u = dot(w, chord) / dot(chord, chord);
+                let off = norm(std::array::from_fn::<f64, 3, _>(|k| w[k] - u * chord[k]));
+                assert!(off <= 0.3 * (1.0 - libm::cos(0.5 * DRAWN)) + 1e-15, "{off}");
             }
         }
     }
