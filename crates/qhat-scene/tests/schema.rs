@@ -154,7 +154,7 @@ const BETWEEN_KEYS: [&str; 69] = [
     "are at one place, or too far apart",
     "folds back by 180°",
     "too large for the corner",
-    "rounds the corners of a wire",
+    "but this curve is given by",
     "of a gas must be positive",
     "a gas must fill more than nothing",
     "numbers in space, but has",

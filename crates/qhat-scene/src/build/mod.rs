@@ -4,6 +4,7 @@
 mod bodies;
 mod connections;
 mod contacts;
+mod curves;
 mod driven;
 mod expectations;
 mod expressions;
