@@ -11,11 +11,19 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
         &["four-bar", "jansen-leg", "strandbeest", "watt", "peaucellier", "pantograph", "trammel", "trebuchet"],
     ),
     ("Drives and motors", &["crank-slider", "crank-rocker", "robot-arm", "kapitza"]),
-    ("Pulleys and gears", &["atwood", "block-and-tackle", "gears"]),
+    ("Pulleys and gears", &["atwood", "block-and-tackle", "gears", "rack-and-pinion"]),
     ("Structures", &["bracket", "bridge-truss", "girder", "tensegrity", "catenary"]),
     (
         "Curves and surfaces",
-        &["cycloid-pendulum", "brachistochrone", "tautochrone", "helix", "rotating-hoop", "conical-pendulum"],
+        &[
+            "cycloid-pendulum",
+            "brachistochrone",
+            "tautochrone",
+            "helix",
+            "bent-wire",
+            "rotating-hoop",
+            "conical-pendulum",
+        ],
     ),
     (
         "Contacts and ropes",
@@ -31,7 +39,7 @@ pub(crate) const GROUPS: [(&str, &[&str]); 11] = [
         ],
     ),
     ("Bodies", &["compound-pendulum", "cube", "middle-axis"]),
-    ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "streamer"]),
+    ("Soft things", &["jelly", "leaf-spring", "inflated-loop", "air-spring", "drop", "streamer"]),
     ("Forces and fields", &["elastic-pendulum", "terminal-velocity", "electroscope", "comets", "figure-eight"]),
     ("Large", &["chain-100", "chain-1000", "chain-10000"]),
 ];

@@ -88,7 +88,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// What no schema says: what one key says about another.
-const BETWEEN_KEYS: [&str; 61] = [
+const BETWEEN_KEYS: [&str; 69] = [
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
@@ -150,6 +150,14 @@ const BETWEEN_KEYS: [&str; 61] = [
     "no plane to be on",
     "is not finite everywhere",
     "needs a radius",
+    "a wire of straight pieces needs",
+    "are at one place, or too far apart",
+    "folds back by 180°",
+    "too large for the corner",
+    "but this curve is given by",
+    "of a gas must be positive",
+    "a gas must fill more than nothing",
+    "numbers in space, but has",
 ];
 
 #[test]

@@ -123,10 +123,7 @@ fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &
             marks.push(Mark::new("ring", []).at([*axis]).around(center, t).sized(radius.value(t)).following([radius]))
         }
         Constraint::OnCurve(on) => {
-            let [from, to] = on.curve.range();
-            let s = |i: usize| from + (to - from) * i as f64 / PIECES as f64;
-            let points: Vec<_> = (0..=PIECES).map(|i| on.curve.point(s(i))).collect();
-            push_once(Mark::new("wire", []).at(points), marks);
+            push_once(Mark::new("wire", []).at(on.curve.drawn(PIECES)), marks);
         }
     }
 }

@@ -279,6 +279,27 @@ const CASES: &[Case] = &[
         },
         &["p1.x - 2*p1.y"],
     ),
+    twin(
+        "straight piece of a bent wire",
+        2,
+        &[(1, [1.0, 0.5, 0.0])],
+        |_| vec![bent_wire(&[[-4.0, -2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]], 0.5)],
+        &["p1.x - 2*p1.y"],
+    ),
+    twin(
+        "arc of a bent wire",
+        2,
+        &[(1, [0.6, -0.8, 0.0])],
+        |_| vec![bent_wire(&arc_below(1.0, 0.0), 1.0)],
+        &["length(p1) - 1"],
+    ),
+    twin(
+        "arc of a bent wire in space",
+        3,
+        &[(1, [0.36, -0.8, 0.48])],
+        |_| vec![bent_wire(&arc_below(0.6, 0.8), 1.0)],
+        &["0.8*p1.x - 0.6*p1.z", "length(p1) - 1"],
+    ),
     twin("pulley", 2, &[], |s| vec![Lengths::pulley(&P[..3], s).into()], &["dist(p0, p1) + dist(p1, p2) - S"]),
     twin(
         "ratio",
@@ -415,6 +436,17 @@ fn on_curve(components: &[&str]) -> Constraint {
     let d = if components.len() == 2 { 2 } else { 3 };
     let components = components.iter().map(|text| parse(text, Purpose::Curve, d)).collect();
     OnCurve { particle: P[1], curve: Curve::parametric(components, -6.0, 6.0).unwrap() }.into()
+}
+
+/// A corner whose arc of radius 1 lies about the origin, from 74° before the lowest point, along (x, 0, z), to 74° after it.
+fn arc_below(x: f64, z: f64) -> [[f64; 3]; 3] {
+    let (depth, way) = (25.0 / 7.0, 5.0);
+    let end = |side: f64| [0.28 * way * side * x, 0.96 * way - depth, 0.28 * way * side * z];
+    [end(-1.0), [0.0, -depth, 0.0], end(1.0)]
+}
+
+fn bent_wire(points: &[[f64; 3]], radius: f64) -> Constraint {
+    OnCurve { particle: P[1], curve: Curve::polyline(points, radius, false).unwrap() }.into()
 }
 
 fn parse(text: &str, purpose: Purpose, d: usize) -> Expression {

@@ -4,7 +4,9 @@
 
 mod systems;
 
-use qhat::{Body, BodyError, Dimension, Distance, Nail, Particle, ParticleId, Settings, Simulation, SystemBuilder};
+use qhat::{
+    Body, BodyError, Dimension, Distance, Nail, Particle, ParticleId, Relation, Settings, Simulation, SystemBuilder,
+};
 use systems::dense::{assert_all_close, assert_close};
 use systems::{gravity, swing};
 
@@ -43,6 +45,10 @@ fn add(builder: &mut SystemBuilder, d: usize, body: &Body, v: [f64; 3], omega: [
     for (k, &[a, b]) in body.rods.iter().enumerate() {
         builder.constraint(format!("rod{k}"), Distance::new(ids[a], ids[b], body.length(k)));
     }
+    for (k, of) in body.midpoints.iter().enumerate() {
+        let [middle, a, b] = of.map(|i| ids[i]);
+        builder.constraint(format!("middle{k}"), Relation::midpoint(middle, a, b));
+    }
     ids
 }
 
@@ -68,6 +74,17 @@ fn triangle_has_the_moments_of_corners_and_centre() {
     let middle = std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0);
     let (_, _, S) = moments(&[a, b, c, middle], &[mass / 12.0, mass / 12.0, mass / 12.0, 0.75 * mass]);
     assert_moments("triangle", &Body::triangle(mass, EDGES).unwrap(), mass, middle, S);
+}
+
+#[test]
+fn a_bar_in_space_has_its_moments_and_its_ends() {
+    let (mass, a) = (1.3, [0.1, 0.2, -0.3]);
+    let b = std::array::from_fn(|k| a[k] + EDGES[0][k]);
+    let bar = Body::bar_in_space(mass, [a, b]).unwrap();
+    let centre = std::array::from_fn(|k| a[k] + 0.5 * EDGES[0][k]);
+    let S = std::array::from_fn(|i| std::array::from_fn(|j| mass / 12.0 * EDGES[0][i] * EDGES[0][j]));
+    assert_moments("bar", &bar, mass, centre, S);
+    assert_eq!(bar.points[..2], [a, b]);
 }
 
 #[test]
@@ -118,6 +135,8 @@ fn what_no_body_has_is_refused() {
     assert_eq!(Body::block(1.0, [0.0; 3], &[EDGES[0], EDGES[0]]), Err(BodyError::FlatEdges));
     assert_eq!(Body::triangle(1.0, [EDGES[0], EDGES[1], EDGES[0]]), Err(BodyError::FlatEdges));
     assert_eq!(Body::bar_in_plane(1.0, [[1.0, 2.0]; 2]), Err(BodyError::Lost));
+    assert_eq!(Body::bar_in_space(1.0, [EDGES[0]; 2]), Err(BodyError::Lost));
+    assert_eq!(Body::bar_in_space(0.0, [EDGES[0], EDGES[1]]), Err(BodyError::Mass(0.0)));
     assert_eq!(Body::in_plane(1.0, [0.0; 2], 0.0), Err(BodyError::NoExtent));
     assert_eq!(Body::in_plane(1.0, [1.0; 2], 1e-40), Err(BodyError::Lost));
 }
@@ -133,6 +152,7 @@ fn rods_hold_a_body_and_none_repeats_another() {
         (Dimension::Three, block(2), 6),
         (Dimension::Three, block(3), 6),
         (Dimension::Three, Body::triangle(1.0, EDGES).unwrap(), 6),
+        (Dimension::Three, Body::bar_in_space(1.0, [EDGES[0], EDGES[1]]).unwrap(), 5),
         (Dimension::Two, flat, 3),
         (Dimension::Two, bar, 3),
     ] {
@@ -140,7 +160,7 @@ fn rods_hold_a_body_and_none_repeats_another() {
         add(&mut builder, dimension.number(), &body, [0.0; 3], [0.0; 3]);
         let (system, state) = builder.build().unwrap();
         let rank = qhat::evaluate(&system, &state).rank.unwrap();
-        assert_eq!(rank, body.rods.len());
+        assert_eq!(rank, body.rods.len() + dimension.number() * body.midpoints.len());
         assert_eq!(system.coordinate_count() - rank, freedom);
     }
 }
@@ -160,15 +180,18 @@ fn compound_pendulum_swings_as_one_of_two_thirds_its_length() {
     let length = 1.2;
     for amplitude in [1e-3, 1.0, 2.5] {
         let end = [-length * libm::sin(amplitude), -length * libm::cos(amplitude)];
-        let bar = Body::bar_in_plane(0.7, [[0.0, 0.0], end]).unwrap();
-        let mut builder = qhat::System::builder(Dimension::Two);
-        let ids = add(&mut builder, 2, &bar, [0.0; 3], [0.0; 3]);
-        builder.constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
-        let (system, state) = builder.build().unwrap();
-        let simulation = Simulation::new(system, state, accurate()).unwrap();
         let period = swing::period(2.0 / 3.0 * length, amplitude);
-        // The tolerance of a substep: an error of order 8 that does not add up in one direction. Measured: 5e-12.
-        assert_close("period", swing::measured(simulation, 2, 5), period, 1e-10 * period);
+        let in_plane = Body::bar_in_plane(0.7, [[0.0, 0.0], end]).unwrap();
+        let in_space = Body::bar_in_space(0.7, [[0.0; 3], [end[0], end[1], 0.0]]).unwrap();
+        for (dimension, bar) in [(Dimension::Two, in_plane), (Dimension::Three, in_space)] {
+            let mut builder = qhat::System::builder(dimension);
+            let ids = add(&mut builder, dimension.number(), &bar, [0.0; 3], [0.0; 3]);
+            builder.constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
+            let (system, state) = builder.build().unwrap();
+            let simulation = Simulation::new(system, state, accurate()).unwrap();
+            // The tolerance of a substep: an error of order 8 that does not add up in one direction. Measured: 5e-12.
+            assert_close("period", swing::measured(simulation, dimension.number(), 5), period, 1e-10 * period);
+        }
         if amplitude < 0.01 {
             // Small swings: 2π √(2L/3g), short of the elliptic integral by θ₀²/16.
             let small = 2.0 * std::f64::consts::PI * (2.0 * length / (3.0 * systems::G)).sqrt();

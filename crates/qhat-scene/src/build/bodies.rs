@@ -1,12 +1,12 @@
-//! `[[bodies]]`: their particles after those of `[[generate]]`, their rods after its links.
+//! `[[bodies]]`: their particles after those of `[[generate]]`, their rods and middles after its links.
 
 use super::loads::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::body::{Body, Common};
-use qhat::{Distance, Particle, ParticleId};
+use qhat::{Distance, Particle, ParticleId, Relation};
 use std::ops::Range;
 
-/// The rods of a body that are still to be added.
+/// A body that is still to be held together.
 pub(super) struct Unheld {
     body: qhat::Body,
     /// The number of its first particle.
@@ -60,13 +60,18 @@ impl Assembly<'_, '_, '_> {
         Some(Unheld { body: made, first, prefix: prefix.to_owned() })
     }
 
-    /// Adds the rods of all bodies.
+    /// Adds what holds the particles of all bodies together.
     pub(super) fn hold_bodies(&mut self, unheld: &[Unheld]) {
         for Unheld { body, first, prefix } in unheld {
             for (rod, &[a, b]) in body.rods.iter().enumerate() {
                 let name = self.free_constraint_name(format!("{prefix}{a}-{prefix}{b}"));
                 let [a, b] = [a, b].map(|end| ParticleId(first + end));
                 self.builder.constraint(name, Distance::new(a, b, body.length(rod)));
+            }
+            for &[middle, a, b] in &body.midpoints {
+                let name = self.free_constraint_name(format!("midpoint({prefix}{middle})"));
+                let [middle, a, b] = [middle, a, b].map(|particle| ParticleId(first + particle));
+                self.builder.constraint(name, Relation::midpoint(middle, a, b));
             }
         }
     }

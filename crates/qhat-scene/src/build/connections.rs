@@ -75,15 +75,17 @@ impl Assembly<'_, '_, '_> {
     fn add_distance(&mut self, distance: &Distance, place: &Node) -> Option<()> {
         let (a, b) = self.pair(&distance.between, place)?;
         let length = match &distance.length {
-            Some(Driven::Number(length)) => *length,
-            Some(driven) => return self.add_driven_rod(distance, driven, (a, b), place),
+            Some(driven) => match self.schedule(driven, place.key("length"))? {
+                Schedule::Constant(length) => length,
+                radius => return self.add_driven_rod(distance, radius, (a, b), place),
+            },
             None => self.measured_length("rod", &distance.between, (a, b), place)?,
         };
         let [Id(one), Id(other)] = &distance.between;
         let name = self.name_of(distance.id.as_ref(), format!("{one}-{other}"));
         let rod = qhat::Distance::new(a, b, length).with_compliance(distance.compliance, distance.damping);
         let Distance { form, breaks_at, .. } = *distance;
-        if breaks_at.is_some() {
+        if breaks_at.is_some() || matches!(distance.length, Some(Driven::Text(_))) {
             self.places.insert(name.clone(), place.span.clone());
         }
         self.builder.constraint(name, qhat::Distance { form: form.into(), breaks_at, ..rod });
@@ -116,7 +118,7 @@ impl Assembly<'_, '_, '_> {
     fn add_driven_rod(
         &mut self,
         distance: &Distance,
-        length: &Driven,
+        radius: Schedule,
         (a, b): (ParticleId, ParticleId),
         place: &Node,
     ) -> Option<()> {
@@ -132,7 +134,6 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("breaks_at").span.clone(), message, Some(help));
             return None;
         }
-        let radius = self.schedule(length, place.key("length"))?;
         let [Id(one), Id(other)] = &distance.between;
         let name = self.name_of(distance.id.as_ref(), format!("{one}-{other}"));
         self.builder.constraint(name, qhat::OnSphere::new(a, b, radius));

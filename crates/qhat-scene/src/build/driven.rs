@@ -1,16 +1,19 @@
-//! Numbers that may follow the time.
+//! Numbers that may follow the time, and constraints whose number is measured at the start where it is left out.
 
 use super::Assembly;
 use crate::model::{Driven, DrivenVector, Parameters};
 use crate::tree::Node;
-use qhat::{Purpose, Schedule};
+use qhat::{Constraint, Purpose, Schedule};
 
 impl Assembly<'_, '_, '_> {
+    /// The number or function of t. A text without t is the number it stands for.
     pub(super) fn schedule(&mut self, driven: &Driven, place: &Node) -> Option<Schedule> {
         match driven {
             Driven::Number(number) => Some(Schedule::Constant(*number)),
             Driven::Text(text) => {
-                self.expression(text, Purpose::Time, &Parameters::new(), place).map(Schedule::Function)
+                let function = self.expression(text, Purpose::Time, &Parameters::new(), place)?;
+                let is_number = !function.uses_time();
+                Some(if is_number { function.value(&[], &[], 0.0).into() } else { function.into() })
             }
         }
     }
@@ -39,5 +42,34 @@ impl Assembly<'_, '_, '_> {
             Some(driven) => self.schedules(driven, place),
             None => Some(start.map(Schedule::Constant)),
         }
+    }
+
+    /// Adds a constraint made for what is given, or for what it has at the start.
+    pub(super) fn add_driven(
+        &mut self,
+        name: String,
+        given: &Option<Driven>,
+        place: (&Node, &str),
+        make: impl Fn(Schedule) -> Constraint,
+    ) -> Option<()> {
+        let (table, key) = place;
+        let schedule = match given {
+            Some(driven) => self.schedule(driven, table.key(key))?,
+            None => {
+                let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions);
+                let [measured] = at_start[..] else { unreachable!("what is driven has one row") };
+                if !measured.is_finite() {
+                    let message = format!("what `{key}` is at the start cannot be measured");
+                    let help =
+                        "move apart particles that are at the same place, or bring nearer what is too far".to_owned();
+                    self.report.error(table.span.clone(), message, Some(help));
+                    return None;
+                }
+                measured.into()
+            }
+        };
+        self.places.insert(name.clone(), table.span.clone());
+        self.builder.constraint(name, make(schedule));
+        Some(())
     }
 }

@@ -100,16 +100,16 @@ impl Assembly<'_, '_, '_> {
         parameters: &Parameters,
         place: &Node,
     ) -> Option<Expression> {
-        let ids = &self.ids;
+        let (ids, scene) = (&self.ids, &self.parameters);
         let suggest = |name: &str, own: &[&'static str]| {
-            let names = parameters.keys().map(String::as_str).chain(own.iter().copied());
+            let names = parameters.keys().chain(scene.keys()).map(String::as_str).chain(own.iter().copied());
             nearest(name, names.chain(ids.alike(name))).map(str::to_owned)
         };
         let scope = Scope {
             purpose,
             dimension: self.dimension_of_system(),
             particle: &|name| ids.find(name),
-            parameter: &|name| parameters.get(name).copied(),
+            parameter: &|name| parameters.get(name).or_else(|| scene.get(name)).copied(),
             suggest: &suggest,
         };
         let error = match Expression::parse(text, &scope) {
@@ -128,24 +128,53 @@ impl Assembly<'_, '_, '_> {
         None
     }
 
+    /// Takes the parameters of the whole scene that can be ones.
+    pub(super) fn take_parameters(&mut self, parameters: &Parameters) {
+        let table = self.tree.key("parameters");
+        for (name, &value) in parameters {
+            let is_along_a_curve = || (name == "s").then(along_a_curve);
+            match self.wrong_parameter(name, value).or_else(is_along_a_curve) {
+                Some(wrong) => self.refuse_parameter(table, name, wrong),
+                None => drop(self.parameters.insert(name.clone(), value)),
+            }
+        }
+    }
+
+    /// `Some` if the parameters beside an expression can be ones.
     fn check_parameters(&mut self, parameters: &Parameters, place: &Node) -> Option<()> {
         let mut is_clean = true;
         for (name, &value) in parameters {
-            let wrong = match check_parameter(name, value) {
-                Err(message) => Some((message, None)),
-                Ok(()) => self.ids.find(name).map(|_| {
-                    let message = format!("{} is the id of a particle, too", self.report.quoted(name));
-                    (message, Some("give the parameter another name".to_owned()))
-                }),
+            let is_taken = || {
+                let message = format!("{} is a parameter of the whole scene already", self.report.quoted(name));
+                let help = "leave it out here, or give it another name";
+                self.parameters.contains_key(name).then(|| (message, Some(help.to_owned())))
             };
-            if let Some((message, help)) = wrong {
-                let span = key_span(place.key("parameters"), name);
-                self.report.error(span, self.report.fitted(&message), help);
+            if let Some(wrong) = self.wrong_parameter(name, value).or_else(is_taken) {
+                self.refuse_parameter(place.key("parameters"), name, wrong);
                 is_clean = false;
             }
         }
         is_clean.then_some(())
     }
+
+    /// Why this cannot be a parameter, and what to do.
+    fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
+        match check_parameter(name, value) {
+            Err(message) => Some((message, None)),
+            Ok(()) => self.ids.find(name).map(|_| {
+                let message = format!("{} is the id of a particle, too", self.report.quoted(name));
+                (message, Some("give the parameter another name".to_owned()))
+            }),
+        }
+    }
+
+    fn refuse_parameter(&mut self, table: &Node, name: &str, (message, help): (String, Option<String>)) {
+        self.report.error(key_span(table, name), self.report.fitted(&message), help);
+    }
+}
+
+fn along_a_curve() -> (String, Option<String>) {
+    ("`s` already has a meaning in curves: give the parameter another name".to_owned(), None)
 }
 
 /// Where a key of a table stands.

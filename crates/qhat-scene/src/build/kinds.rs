@@ -1,17 +1,14 @@
 //! The kinds of `[[constraints]]` beyond rods and nails.
 
 use super::Assembly;
-use crate::model::Parameters;
-use crate::model::kinds::{
-    CenterOfMass, Circle, Coincidence, Curve, Direction, Line, Midpoint, Plane, Relation, Sphere,
-};
+use crate::model::kinds::{CenterOfMass, Circle, Coincidence, Direction, Line, Midpoint, Plane, Relation, Sphere};
 use crate::model::{Driven, DrivenVector, Id, Name};
 use crate::tree::Node;
-use qhat::{Anchor, Constraint, ParticleId, Purpose, Schedule};
+use qhat::{Anchor, Constraint, ParticleId, Schedule};
 
 impl Assembly<'_, '_, '_> {
     /// Adds a constraint under its own name, or one made from what it is.
-    fn add_named(&mut self, id: Option<&Name>, wanted: String, constraint: impl Into<Constraint>) {
+    pub(super) fn add_named(&mut self, id: Option<&Name>, wanted: String, constraint: impl Into<Constraint>) {
         let name = self.name_of(id, wanted);
         self.builder.constraint(name, constraint);
     }
@@ -37,7 +34,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// Tells that a constraint needs one of two keys, and not both; not where one is there and was refused already.
-    fn needs_one(&mut self, place: &Node, kind: &str, keys: [&str; 2], both: bool) {
+    pub(super) fn needs_one(&mut self, place: &Node, kind: &str, keys: [&str; 2], both: bool) {
         let [one, other] = keys;
         if !both && keys.iter().any(|key| place.get(key).is_some()) {
             return;
@@ -255,45 +252,5 @@ impl Assembly<'_, '_, '_> {
             }
         };
         Some((particle, center, radius))
-    }
-
-    pub(super) fn add_curve(&mut self, it: &Curve, place: &Node) -> Option<()> {
-        let particle = self.particle(&it.particle, place.key("particle"))?;
-        let curve = match (&it.path, &it.points) {
-            (Some(path), None) => {
-                let Some([from, to]) = it.range else {
-                    if place.get("range").is_some() {
-                        return None;
-                    }
-                    let help = "add `range`, the values of s at its two ends, as in `range = [0.0, 1.0]`".to_owned();
-                    self.report.error(place.span.clone(), "a curve by `path` needs a `range`", Some(help));
-                    return None;
-                };
-                let list = place.key("path");
-                let components = path.iter().enumerate();
-                let components: Vec<_> = components
-                    .map(|(i, text)| self.expression(text, Purpose::Curve, &Parameters::new(), list.item(i)))
-                    .collect();
-                qhat::Curve::parametric(components.into_iter().collect::<Option<_>>()?, from, to)
-            }
-            (None, Some(points)) => {
-                let points: Vec<_> = points.iter().map(|point| point.padded()).collect();
-                qhat::Curve::through(&points, it.closed)
-            }
-            (given, _) => {
-                self.needs_one(place, "curve", ["path", "points"], given.is_some());
-                return None;
-            }
-        };
-        match curve {
-            Ok(curve) => {
-                self.add_named(it.id.as_ref(), format!("curve({})", it.particle.0), qhat::OnCurve { particle, curve });
-                Some(())
-            }
-            Err(message) => {
-                self.report.error(place.span.clone(), message, None);
-                None
-            }
-        }
     }
 }

@@ -4,7 +4,7 @@ use super::Assembly;
 use crate::model::load::{AirDrag, CentralGravity, Charges, Load, PairwiseGravity, Pressure, TorsionSpring};
 use crate::model::{Id, Vector};
 use crate::tree::Node;
-use qhat::{CentralForce, CubicSpring, Facet, HarmonicForce, InverseSquare, ParticleId, PointForce};
+use qhat::{CentralForce, CubicSpring, Facet, Gas, HarmonicForce, InverseSquare, ParticleId, PointForce};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 
@@ -155,10 +155,8 @@ impl Assembly<'_, '_, '_> {
         if twice_area < 0.0 {
             outline.reverse();
         }
-        for facet in qhat::Pressure::in_loop(&outline, load.pressure) {
-            self.builder.force(facet);
-        }
-        Some(())
+        let ends = outline.iter().zip(outline.iter().cycle().skip(1));
+        self.add_pressure(load, ends.map(|(&a, &b)| Facet::Edge([a, b])).collect(), place)
     }
 
     fn add_mesh(&mut self, load: &Pressure, place: &Node) -> Option<()> {
@@ -184,9 +182,23 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("triangles").span.clone(), message, Some(help));
             return None;
         }
-        for facet in facets {
-            self.builder.force(qhat::Pressure { facet, pressure: load.pressure });
+        self.add_pressure(load, facets, place)
+    }
+
+    fn add_pressure(&mut self, load: &Pressure, facets: Vec<Facet>, place: &Node) -> Option<()> {
+        let Some(exponent) = load.exponent else {
+            for facet in facets {
+                self.builder.force(qhat::Pressure { facet, pressure: load.pressure });
+            }
+            return Some(());
+        };
+        let gas = Gas::new(facets, load.pressure, exponent, self.dimension_of_system(), &self.positions);
+        if let Err(message) = gas.check() {
+            let help = "leave out `exponent` for a pressure that stays".to_owned();
+            self.report.error(place.span.clone(), message, Some(help));
+            return None;
         }
+        self.builder.force(gas);
         Some(())
     }
 

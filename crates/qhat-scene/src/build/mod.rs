@@ -4,8 +4,8 @@
 mod bodies;
 mod connections;
 mod contacts;
+mod curves;
 mod driven;
-mod drives;
 mod expectations;
 mod expressions;
 mod generated;
@@ -15,7 +15,7 @@ mod linkages;
 mod loads;
 mod particles;
 
-use crate::model::Document;
+use crate::model::{Document, Parameters};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::tree::Node;
@@ -43,6 +43,8 @@ struct Assembly<'a, 'r, 't> {
     /// Of each particle, for loads that depend on it.
     inertias: Vec<Inertia>,
     ids: Ids,
+    /// What every expression of the scene may refer to.
+    parameters: Parameters,
     constraint_names: HashSet<String>,
     /// Forces as expressions, to be tried where the scene starts.
     untried: Vec<Untried>,
@@ -60,6 +62,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         positions: Vec::new(),
         inertias: Vec::new(),
         ids: Ids::default(),
+        parameters: Parameters::new(),
         constraint_names: HashSet::new(),
         untried: Vec::new(),
         places: Places::new(),
@@ -112,6 +115,7 @@ impl Assembly<'_, '_, '_> {
             self.report.error(0..0, "the scene has no particles", Some(help));
             return None;
         }
+        self.take_parameters(&document.parameters);
         self.add_constraints(&document.constraints);
         self.add_links(&unlinked);
         self.hold_bodies(&unheld);
@@ -129,6 +133,10 @@ impl Assembly<'_, '_, '_> {
             self.check_expectations(expect);
         }
         (clean && self.report.is_empty()).then_some(())
+    }
+
+    fn dimension_of_system(&self) -> Dimension {
+        if self.dimension == 2 { Dimension::Two } else { Dimension::Three }
     }
 
     /// The distance at the start [m].

@@ -15,7 +15,7 @@ pub(crate) enum Body {
     Inertia(Inertia),
 }
 
-/// A uniform thin bar in the plane; its particles 0 and 1 are its ends.
+/// A uniform thin bar; its particles 0 and 1 are its ends.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bar {
@@ -117,11 +117,8 @@ impl Body {
         let refused =
             |key: &'static str| move |error: BodyError| Refusal { key, message: error.to_string(), help: help(key) };
         match self {
-            Body::Bar(Bar { from, .. }) if dimension == 3 => {
-                let message = format!("a `bar` lies in the plane, but this scene has {} dimensions", from.0.len());
-                let help =
-                    "use kind = \"block\" with one edge; rods cannot hold a straight row of particles by its ends";
-                Err(Refusal { key: "kind", message, help })
+            Body::Bar(Bar { mass, from, to, .. }) if dimension == 3 => {
+                qhat::Body::bar_in_space(*mass, [from, to].map(Vector::padded)).map_err(refused("to"))
             }
             Body::Bar(Bar { mass, from, to, .. }) => {
                 qhat::Body::bar_in_plane(*mass, [from, to].map(|end| [end.0[0], end.0[1]])).map_err(refused("to"))

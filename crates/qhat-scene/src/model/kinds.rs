@@ -184,10 +184,14 @@ pub(crate) struct Curve {
     /// The values of s at its two ends; the curve goes on beyond them as the expressions do.
     #[serde(default)]
     pub(crate) range: Option<[f64; 2]>,
-    /// Points that a smooth curve goes through [m], in the place of `path` and `range`.
+    /// Points that the wire goes through smoothly, or with a `radius` straight from each to the next [m]; in the place of `path` and `range`.
     #[serde(default)]
     pub(crate) points: Option<Vec<Vector>>,
-    /// Whether the curve through points comes back to the first of them.
+    /// The radius of the corners [m], above 0, of a wire that goes straight from point to point; a smooth curve if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) radius: Option<f64>,
+    /// Whether the wire through points comes back to the first of them.
     #[serde(default)]
     pub(crate) closed: bool,
 }

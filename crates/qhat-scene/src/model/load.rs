@@ -187,8 +187,12 @@ pub(crate) struct AirDrag {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Pressure {
-    /// The pressure [N/m in the plane, Pa in space], positive where it pushes outward.
+    /// The pressure [N/m in the plane, Pa in space], positive where it pushes outward; at the start, where `exponent` is given.
     pub(crate) pressure: f64,
+    /// The exponent of a gas, above 0, whose pressure times area or volume to this power stays: 1 at one temperature, 1.4 for air that exchanges no heat; the pressure stays if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) exponent: Option<f64>,
     /// The ids of the particles of the loop in either order, 3 or more; for the plane.
     #[serde(default)]
     pub(crate) outline: Vec<Id>,

@@ -45,6 +45,9 @@ pub(crate) struct Document {
     /// The number of space dimensions, 2 or 3.
     #[schemars(range(min = 2, max = 3))]
     pub(crate) dimension: u8,
+    /// A table of numbers that every expression of the scene may refer to by name.
+    #[serde(default)]
+    pub(crate) parameters: Parameters,
     /// How to step.
     #[serde(default)]
     pub(crate) step: Step,

@@ -61,6 +61,8 @@ pub struct Body {
     pub masses: Vec<f64>,
     /// Which two of them each rod connects.
     pub rods: Vec<[usize; 2]>,
+    /// Which of them stays in the middle of which two: the one, and the two. Empty but for a bar in space.
+    pub midpoints: Vec<[usize; 3]>,
 }
 
 impl Body {
@@ -142,8 +144,8 @@ impl Body {
 
     /// A uniform thin bar in the plane with a particle at each end [m], so that it can be nailed there.
     ///
-    /// Three particles in its line (m/6, 4m/6, m/6) have its moments too, but rods in one line cannot hold them: they repeat each
-    /// other and leave the middle free to move sideways. Here the middle is two particles at ±w beside the line, and w and the
+    /// Three particles in its line (m/6, 4m/6, m/6) have its moments too, but rods in one line cannot hold them, only what
+    /// [`bar_in_space`](Self::bar_in_space) adds. Here the middle is two particles at ±w beside the line, and w and the
     /// masses are such that the moment of inertia is right, which is all that the plane asks for:
     /// 2 · 11/72 · (L/2)² + 2 · 25/72 · (L/10)² = L²/12. Particles 0 and 1 are the ends.
     ///
@@ -160,6 +162,27 @@ impl Body {
             masses: vec![end, end, middle, middle],
             // Four points in the plane need five rods; the sixth, between the two in the middle, would repeat them.
             rods: vec![[0, 1], [0, 2], [2, 1], [0, 3], [3, 1]],
+            midpoints: Vec::new(),
+        };
+        body.told_apart()
+    }
+
+    /// A uniform thin bar in space with a particle at each end [m], so that it can be nailed there: m/6 at each end, 4m/6 in the middle.
+    ///
+    /// It has no moment about itself, so its particles lie in one line, and rods cannot hold those: the third repeats the others and leaves the
+    /// middle free to move sideways. Here one rod holds the ends, and the third particle [stays in the middle](crate::Relation::midpoint) of them:
+    /// 9 − 1 − 3 = 5 degrees of freedom. Particles 0 and 1 are the ends.
+    ///
+    /// # Errors
+    /// A mass [kg] that is not positive; numbers that are not finite; ends at the same place.
+    pub fn bar_in_space(mass: f64, ends: [[f64; 3]; 2]) -> Result<Self, BodyError> {
+        check(mass, &ends)?;
+        let [a, b] = ends;
+        let body = Body {
+            points: vec![a, b, std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k])],
+            masses: vec![mass / 6.0, mass / 6.0, mass * (2.0 / 3.0)],
+            rods: vec![[0, 1]],
+            midpoints: vec![[2, 0, 1]],
         };
         body.told_apart()
     }
@@ -205,7 +228,7 @@ impl Body {
     /// A rod between any two.
     fn complete(points: Vec<[f64; 3]>, masses: Vec<f64>) -> Result<Self, BodyError> {
         let rods = (1..points.len()).flat_map(|b| (0..b).map(move |a| [a, b])).collect();
-        Body { points, masses, rods }.told_apart()
+        Body { points, masses, rods, midpoints: Vec::new() }.told_apart()
     }
 
     /// Itself, if its particles are still at different places after rounding.

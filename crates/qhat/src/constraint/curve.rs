@@ -8,11 +8,12 @@
 //! s* is looked for from the nearest of 512 points of the curve, by Newton's method that is kept between the neighbours of that point:
 //! it depends on x alone, never on what was asked before, so a run gives the same bits wherever it starts from. Near a place where the
 //! curve comes close to itself or crosses itself the nearest branch is taken, and x cannot say which one it came along: a curve
-//! must keep off itself.
+//! must keep off itself. A polyline has its foot in closed form (polyline.rs).
 //!
 //! Beyond 9/10 of the radius of curvature on the inner side −g' is held at c'·c'/10: there the foot is about to jump, and its derivative
 //! would be infinite. Where c' = 0, a cusp, the tangent is that of c" and the foot does not move.
 
+use super::polyline::Polyline;
 use super::spline::Spline;
 use crate::expression::Expression;
 use crate::number::Number;
@@ -41,6 +42,7 @@ struct Shape {
 enum Form {
     Expressions(Vec<Expression>),
     Spline(Spline),
+    Polyline(Polyline),
 }
 
 /// Where the foot of a point is.
@@ -84,6 +86,18 @@ impl Curve {
         Curve::new(Form::Spline(spline), 0.0, end)
     }
 
+    /// Straight from point to point [m], closed or open, with corners that are arcs of a radius [m]; z = 0 in two dimensions. Its parameter is
+    /// its arc length [m]. Beyond the ends of an open one it goes on straight.
+    ///
+    /// # Errors
+    /// Fewer than two points, or three of a closed one; two neighbours at one place; a corner that folds back by 180°; a radius that is too
+    /// large for the straight pieces beside a corner, with the largest that fits.
+    pub fn polyline(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, String> {
+        let polyline = Polyline::new(points, radius, closed)?;
+        let to = polyline.end();
+        Ok(Curve { shape: Arc::new(Shape { form: Form::Polyline(polyline), from: 0.0, to, samples: Vec::new() }) })
+    }
+
     fn new(form: Form, from: f64, to: f64) -> Result<Self, String> {
         let mut shape = Shape { form, from, to, samples: Vec::new() };
         shape.samples = (0..=SAMPLES).map(|i| shape.at::<3>(shape.parameter(i)).map(|[c, _, _]| c)).collect();
@@ -111,6 +125,15 @@ impl Curve {
     /// The point at a parameter [m]; z = 0 in two dimensions.
     pub fn point(&self, s: f64) -> [f64; 3] {
         self.shape.at::<3>(s).map(|[c, _, _]| c)
+    }
+
+    /// Points of a polygon that looks like it [m], from end to end: in so many pieces, or a polyline's straight pieces and its arcs in pieces of 5°.
+    pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {
+        let Shape { form, from, to, .. } = &*self.shape;
+        match form {
+            Form::Polyline(polyline) => polyline.drawn().into_iter().map(|s| self.point(s)).collect(),
+            _ => (0..=pieces).map(|i| self.point(from + (to - from) * i as f64 / pieces as f64)).collect(),
+        }
     }
 
     pub(super) fn foot<N: Number, const D: usize>(&self, x: [N; D]) -> Foot<N, D> {
@@ -142,17 +165,23 @@ impl Shape {
 
     /// c, c' and c" of each component.
     fn at<const D: usize>(&self, s: f64) -> [[f64; 3]; D] {
-        std::array::from_fn(|k| match &self.form {
-            Form::Expressions(components) => components.get(k).map_or([0.0; 3], |component| {
-                let jet = component.jet(&[], &[], s);
-                [jet.value, jet.first, jet.second]
+        match &self.form {
+            Form::Expressions(components) => std::array::from_fn(|k| {
+                components.get(k).map_or([0.0; 3], |component| {
+                    let jet = component.jet(&[], &[], s);
+                    [jet.value, jet.first, jet.second]
+                })
             }),
-            Form::Spline(spline) => spline.at(k, s),
-        })
+            Form::Spline(spline) => std::array::from_fn(|k| spline.at(k, s)),
+            Form::Polyline(polyline) => polyline.at(s),
+        }
     }
 
     /// s*.
     fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
+        if let Form::Polyline(polyline) = &self.form {
+            return polyline.foot(x);
+        }
         let away = |i: usize| {
             let apart: Point<D> = std::array::from_fn(|k| x[k] - self.samples[i][k]);
             dot(apart, apart)

@@ -22,6 +22,7 @@ mod on_curve;
 mod on_line;
 mod on_plane;
 mod on_sphere;
+mod polyline;
 mod relation;
 mod rows;
 mod smooth;

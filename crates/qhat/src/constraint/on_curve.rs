@@ -11,7 +11,7 @@
 //!
 //! λ is the force of the wire on the particle [N]. γ and the geometric stiffness follow from how J turns with x. In space they leave out
 //! w·c‴, which is zero where the constraint holds. In the plane a spline is exact as well; its c‴ jumps at the given points, which costs a
-//! method of high order some of its order there.
+//! method of high order some of its order there. The corners of a polyline begin and end with a jump of c" itself (polyline.rs says what that costs).
 
 use super::curve::{Curve, Foot};
 use super::smooth::Smooth;

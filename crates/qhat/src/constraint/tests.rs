@@ -240,13 +240,31 @@ fn rows_of_a_wire_in_space_are_exact_on_it() {
     let helix = Curve::parametric(texts.map(|text| expression(text, Purpose::Curve, 3)).to_vec(), -7.0, 7.0).unwrap();
     let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [1.5, 2.0, -0.3], [0.2, 1.6, 0.1], [-0.8, 0.9, 0.5]];
     let spline = Curve::through(&points, true).unwrap();
-    for (curve, at) in [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1)] {
+    let bent = Curve::polyline(&points, 0.3, true).unwrap();
+    let places =
+        [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1), (&bent, 0.5), (&bent, 0.95)];
+    for (curve, at) in places {
         let constraint = Constraint::from(OnCurve { particle: P, curve: curve.clone() });
         let (mut q, qd) = (numbers(PARTICLES * 3, 1), numbers(PARTICLES * 3, 2));
         q[P.0 * 3..].copy_from_slice(&curve.point(at));
         against_differences::<3>("wire", &constraint, &q, &qd);
         // 1e-15: the place itself is rounded.
         close("wire: C", &evaluated::<3>(&constraint, &q, &qd, T).C, &[0.0, 0.0], 1e-15);
+    }
+}
+
+/// In the plane a wire of straight pieces and arcs is exact beside itself, too.
+#[test]
+fn rows_of_a_bent_wire_are_exact_beside_it() {
+    let points = [[0.0; 3], [2.0, 0.0, 0.0], [2.5, 2.0, 0.0], [-1.0, 2.5, 0.0]];
+    let curve = Curve::polyline(&points, 0.8, false).unwrap();
+    // On a straight piece, on both arcs, and beyond the ends; 0.1 m to either side of an arc of 0.8 m.
+    for (i, at) in [-1.0, 0.5, 1.9, 3.2, 7.0].into_iter().enumerate() {
+        let constraint = Constraint::from(OnCurve { particle: P, curve: curve.clone() });
+        let (mut q, qd) = (numbers(PARTICLES * 2, 1), numbers(PARTICLES * 2, 2));
+        let place = curve.point(at);
+        (0..2).for_each(|k| q[P.0 * 2 + k] = place[k] + 0.1 * numbers(2, i as u64)[k]);
+        against_differences::<2>("bent wire", &constraint, &q, &qd);
     }
 }
 

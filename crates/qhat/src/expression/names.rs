@@ -56,11 +56,11 @@ impl<'a> Lowering<'a> {
             }
             (Some(_), _, _) if self.scope.purpose == Purpose::Curve => {
                 let message = format!("{} is a particle, but a curve depends on its parameter alone", quoted(base));
-                Err(ExpressionError::new(span.clone(), message).with_help("use `s` and numbers"))
+                Err(ExpressionError::new(span.clone(), message).with_help("use `s`, parameters and numbers"))
             }
             (Some(_), _, _) if self.scope.purpose == Purpose::Time => {
                 let message = format!("{} is a particle, but this number may depend on time alone", quoted(base));
-                Err(ExpressionError::new(span.clone(), message).with_help("use `t` and numbers"))
+                Err(ExpressionError::new(span.clone(), message).with_help("use `t`, parameters and numbers"))
             }
             (Some(particle), _, None) => {
                 let d = self.scope.dimension.number();
@@ -133,8 +133,8 @@ impl<'a> Lowering<'a> {
         match (self.scope.suggest)(base, &self.own()) {
             Some(near) => error.with_help(format!("did you mean `{near}`?")),
             None => error.with_help(match self.scope.purpose {
-                Purpose::Time => "names are `t`, `pi` and `tau`",
-                Purpose::Curve => "names are `s`, the parameter of the curve, `pi` and `tau`",
+                Purpose::Time => "names are `t`, parameters, `pi` and `tau`",
+                Purpose::Curve => "names are `s` along the curve, parameters, `pi` and `tau`",
                 _ => "names are particles, parameters, `t`, `pi` and `tau`",
             }),
         }

@@ -8,6 +8,7 @@ mod central;
 mod cubic_spring;
 mod drag;
 mod expression;
+mod gas;
 mod gravity;
 mod harmonic;
 mod inverse_square;
@@ -26,6 +27,7 @@ pub use central::CentralForce;
 pub use cubic_spring::CubicSpring;
 pub use drag::Drag;
 pub use expression::{ExpressionForce, ExpressionPotential};
+pub use gas::Gas;
 pub use gravity::Gravity;
 pub use harmonic::HarmonicForce;
 pub use inverse_square::InverseSquare;
@@ -167,6 +169,8 @@ forces! {
     TorsionSpring,
     /// Pressure on one edge of a closed loop or one triangle of a closed mesh.
     Pressure,
+    /// A gas in a closed loop or mesh, whose pressure follows what it fills.
+    Gas,
 }
 
 /// `Ok` if the number is finite; otherwise a sentence that names it.

@@ -42,12 +42,95 @@ impl Pressure {
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         ends.map(move |(&a, &b)| Pressure { facet: Facet::Edge([a, b]), pressure })
     }
+}
 
-    fn corners(&self) -> &[ParticleId] {
-        match &self.facet {
+impl Facet {
+    /// The particles at its corners.
+    pub fn corners(&self) -> &[ParticleId] {
+        match self {
             Facet::Edge(corners) => corners,
             Facet::Triangle(corners) => corners,
         }
+    }
+
+    /// A or U.
+    pub(super) fn enclosed<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        match *self {
+            Facet::Edge([a, b]) => 0.5 * cross(place(motion, a), place(motion, b))[2],
+            Facet::Triangle([a, b, c]) => {
+                let [u, v, w] = cross(place(motion, b), place(motion, c));
+                let [x, y, z] = place(motion, a);
+                (x * u + y * v + z * w) / 6.0
+            }
+        }
+    }
+
+    /// Calls `visit(particle, share, v)` with ∂A/∂x or ∂U/∂x of each corner in their order, which is share times v.
+    pub(super) fn gradient<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, f64, Point<3>),
+    ) {
+        match *self {
+            Facet::Edge([a, b]) => {
+                let (x_a, x_b) = (place(motion, a), place(motion, b));
+                visit(a, 0.5, [x_b[1], -x_b[0], 0.0]);
+                visit(b, 0.5, [-x_a[1], x_a[0], 0.0]);
+            }
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    visit(a, 1.0 / 6.0, cross(place(motion, b), place(motion, c)));
+                }
+            }
+        }
+    }
+
+    /// The bound of p times the second derivatives on the force of each corner.
+    pub(super) fn bound<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        pressure: f64,
+        bound: &mut impl FnMut(ParticleId, f64, f64),
+    ) {
+        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far they reach,
+        // not where the origin is. Each triangle answers for its side of the two edges at a corner.
+        match *self {
+            Facet::Edge(ends) => ends.into_iter().for_each(|id| bound(id, 0.5 * pressure.abs(), 0.0)),
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let reach = |id| norm(minus(motion.x(id), motion.x(a)));
+                    bound(a, pressure.abs() / 6.0 * (reach(b) + reach(c)), 0.0);
+                }
+            }
+        }
+    }
+
+    /// Hands over −p times the second derivatives.
+    pub(super) fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        pressure: f64,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+        match *self {
+            Facet::Edge([a, b]) => {
+                let s = 0.5 * pressure;
+                visit(a, b, Stiffness::Indefinite(within([[0.0, -s, 0.0], [s, 0.0, 0.0], [0.0; 3]])));
+            }
+            Facet::Triangle([a, b, c]) => {
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let [x, y, z] = place(motion, c).map(|component| pressure / 6.0 * component);
+                    visit(a, b, Stiffness::Indefinite(within([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])));
+                }
+            }
+        }
+    }
+
+    /// `Ok` if its corners are different particles.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let corners = self.corners();
+        let repeats = corners.iter().enumerate().any(|(i, id)| corners[..i].contains(id));
+        if repeats { Err("a facet under pressure needs different particles at its corners".into()) } else { Ok(()) }
     }
 }
 
@@ -68,33 +151,13 @@ fn within<const D: usize>(full: Block<3>) -> Block<D> {
 
 impl Acts for Pressure {
     fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
-        let mut push = |particle: ParticleId, share: f64, force: Point<3>| {
-            add::<D>(Q, particle, std::array::from_fn(|k| share * self.pressure * force[k]));
-        };
-        match self.facet {
-            Facet::Edge([a, b]) => {
-                let (x_a, x_b) = (place(motion, a), place(motion, b));
-                push(a, 0.5, [x_b[1], -x_b[0], 0.0]);
-                push(b, 0.5, [-x_a[1], x_a[0], 0.0]);
-            }
-            Facet::Triangle([a, b, c]) => {
-                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    push(a, 1.0 / 6.0, cross(place(motion, b), place(motion, c)));
-                }
-            }
-        }
+        self.facet.gradient(motion, &mut |particle, share, v| {
+            add::<D>(Q, particle, std::array::from_fn(|k| share * self.pressure * v[k]));
+        });
     }
 
     fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
-        let enclosed = match self.facet {
-            Facet::Edge([a, b]) => 0.5 * cross(place(motion, a), place(motion, b))[2],
-            Facet::Triangle([a, b, c]) => {
-                let [u, v, w] = cross(place(motion, b), place(motion, c));
-                let [x, y, z] = place(motion, a);
-                (x * u + y * v + z * w) / 6.0
-            }
-        };
-        -self.pressure * enclosed
+        -self.pressure * self.facet.enclosed(motion)
     }
 
     fn power<const D: usize>(&self, _: Motion<'_, D>) -> f64 {
@@ -102,17 +165,7 @@ impl Acts for Pressure {
     }
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
-        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far they reach,
-        // not where the origin is. Each triangle answers for its side of the two edges at a corner.
-        match self.facet {
-            Facet::Edge(ends) => ends.into_iter().for_each(|id| bound(id, 0.5 * self.pressure.abs(), 0.0)),
-            Facet::Triangle([a, b, c]) => {
-                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    let reach = |id| norm(minus(motion.x(id), motion.x(a)));
-                    bound(a, self.pressure.abs() / 6.0 * (reach(b) + reach(c)), 0.0);
-                }
-            }
-        }
+        self.facet.bound(motion, self.pressure, bound);
     }
 
     fn dependence(&self) -> Dependence {
@@ -125,28 +178,15 @@ impl Acts for Pressure {
         _: f64,
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
-        match self.facet {
-            Facet::Edge([a, b]) => {
-                let s = 0.5 * self.pressure;
-                visit(a, b, Stiffness::Indefinite(within([[0.0, -s, 0.0], [s, 0.0, 0.0], [0.0; 3]])));
-            }
-            Facet::Triangle([a, b, c]) => {
-                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    let [x, y, z] = place(motion, c).map(|component| self.pressure / 6.0 * component);
-                    visit(a, b, Stiffness::Indefinite(within([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])));
-                }
-            }
-        }
+        self.facet.tangent(motion, self.pressure, visit);
     }
 
     fn particles(&self) -> Vec<ParticleId> {
-        self.corners().to_vec()
+        self.facet.corners().to_vec()
     }
 
     fn check(&self) -> Result<(), String> {
         finite("a pressure", self.pressure)?;
-        let corners = self.corners();
-        let repeats = corners.iter().enumerate().any(|(i, id)| corners[..i].contains(id));
-        if repeats { Err("a facet under pressure needs different particles at its corners".into()) } else { Ok(()) }
+        self.facet.check()
     }
 }

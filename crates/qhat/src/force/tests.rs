@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::linalg::block::{diagonal, outer, plus, transposed};
+use crate::system::Dimension;
 
 /// Numbers in [−1, 1) that look random and are the same everywhere.
 struct Numbers(u64);
@@ -46,7 +47,15 @@ fn cases<const D: usize>() -> Vec<Case> {
     let swing = HarmonicForce { particle: c, amplitude: [1.0, -2.0, 0.5], angular_frequency: 5.0, phase: 0.3 };
     let actuator = Actuator { a: d, b, push: 1.3, amplitude: 2.0, angular_frequency: 4.0, phase: -0.2 };
     let cubic = CubicSpring { a: b, b: d, stiffness: -3.0, cubic: 8.0, damping: 0.6, rest: 0.9 };
-    vec![
+    let corners = [-1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0];
+    let gas = |name, facets: Vec<Facet>, exponent| {
+        case(name, Gas::new(facets, 3.0, exponent, Dimension::Three, &corners), true)
+    };
+    let edges = || [[a, b], [b, c], [c, d], [d, a]].map(Facet::Edge).to_vec();
+    // Of these corners the faces above see the inside; in the plane triangles enclose nothing for a gas to fill.
+    let outside = faces.map(|[a, b, c]| Facet::Triangle([a, c, b])).to_vec();
+    let in_space = (D == 3).then(|| gas("gas in a mesh", outside, 1.4));
+    let all = vec![
         case("gravity", Gravity { acceleration: [0.3, -9.81, 1.0] }, true),
         case("drag", Drag { coefficient: 0.4 }, false),
         case("spring", Spring { a, b: c, stiffness: 9.0, damping: 0.4, rest: 0.7 }, true),
@@ -62,7 +71,10 @@ fn cases<const D: usize>() -> Vec<Case> {
         case("straight", torsion(std::f64::consts::PI), true),
         Case { name: "ring", forces: ring, is_conservative: true },
         Case { name: "mesh", forces: mesh, is_conservative: true },
-    ]
+        gas("gas", edges(), 1.4),
+        gas("gas of one temperature", edges(), 1.0),
+    ];
+    all.into_iter().chain(in_space).collect()
 }
 
 const MASS: [f64; PARTICLES] = [0.7, 1.2, 0.5, 2.0];

@@ -1,0 +1,347 @@
+//! A wire of straight pieces with round corners, by its arc length s: |c'| = 1.
+//!
+//! ```text
+//! at a corner p the wire comes along e and leaves along f, unit vectors, with the angle θ between them
+//! o = (e − f)/|e − f|,   a = (e + f)/|e + f|,   |e − f| = 2 sin(θ/2),   |e + f| = 2 cos(θ/2)
+//! arc of radius r, ψ from −θ/2 to θ/2:   c = m + r (cos ψ o + sin ψ a),   m = p − r o/cos(θ/2),   ψ = u/r − θ/2
+//!   c' = −sin ψ o + cos ψ a,   which is e at −θ/2 and f at θ/2;   c" = −(cos ψ o + sin ψ a)/r
+//! it takes r tan(θ/2) of the straight piece on either side:   r (tan(θ_i/2) + tan(θ_{i+1}/2)) ≤ |p_{i+1} − p_i|
+//! ```
+//!
+//! u is the length since the piece began. An arc lies in the plane of its two pieces; out of it o, a and c do not go, so all of this holds in
+//! space as it stands. An open wire goes on straight beyond its ends. The foot of a point is the nearest of its feet on all pieces, each
+//! found in closed form: on a straight one (x − c)·e, on an arc r (atan2((x − m)·a, (x − m)·o) + θ/2), held within the piece.
+//!
+//! c and c' are continuous; c" jumps from 0 to 1/r where an arc begins, and with it γ and the force of the wire, as it does on a real one.
+//! An adaptive method must close in on each of these places by rejected and short substeps: `dop853` takes 28 there at a tolerance of 1e-6, 40
+//! at 1e-9. One of fixed steps is of first order there.
+
+use crate::point::{Point, dot, minus, norm};
+
+/// A corner that comes nearer to folding back than this [rad] is taken to do so: its arc would lie a million radii away from it.
+const FOLD: f64 = 1e-6;
+/// What the roundings of a corner may take of a straight piece, relative: where two arcs meet it is left with no length.
+const ROUNDING: f64 = 1e-12;
+/// A drawn arc is cut in pieces of 5° at most: 0.1 % of the radius off the arc.
+const DRAWN: f64 = std::f64::consts::PI / 36.0;
+
+/// A wire of straight pieces and arcs.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Polyline {
+    pieces: Vec<Piece>,
+    closed: bool,
+    end: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Piece {
+    /// s where it begins.
+    start: f64,
+    length: f64,
+    form: Form,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Form {
+    Straight {
+        from: [f64; 3],
+        along: [f64; 3],
+    },
+    Arc {
+        /// m.
+        center: [f64; 3],
+        radius: f64,
+        /// o.
+        outward: [f64; 3],
+        /// a.
+        across: [f64; 3],
+        /// θ/2.
+        half: f64,
+    },
+}
+
+/// e, f and what follows from them.
+struct Corner {
+    diff: [f64; 3],
+    sum: [f64; 3],
+    /// tan(θ/2).
+    tangent: f64,
+}
+
+impl Polyline {
+    /// Through points [m], with corners of one radius [m].
+    pub(super) fn new(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, String> {
+        let n = points.len();
+        let least = if closed { 3 } else { 2 };
+        if n < least {
+            return Err(format!("a wire of straight pieces needs {least} points, but has {n}"));
+        }
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(format!("the radius of a wire's corners must be positive and finite, but is {radius}"));
+        }
+        let count = if closed { n } else { n - 1 };
+        let mut sides = Vec::new();
+        for i in 0..count {
+            let way = minus(points[(i + 1) % n], points[i]);
+            let square = dot(way, way);
+            if !square.is_normal() {
+                let next = (i + 1) % n;
+                return Err(format!("points[{i}] and points[{next}] are at one place, or too far apart to measure"));
+            }
+            let length = square.sqrt();
+            sides.push((way.map(|x| x / length), length));
+        }
+        let mut corners = Vec::new();
+        for i in 0..n {
+            let is_end = !closed && (i == 0 || i == n - 1);
+            corners.push(if is_end { None } else { corner(sides[(i + count - 1) % count].0, sides[i].0, i)? });
+        }
+        fit(&sides, &corners, radius)?;
+
+        let mut wire = Polyline { pieces: Vec::new(), closed, end: 0.0 };
+        let taken = |i: usize| corners[i].as_ref().map_or(0.0, |corner| radius * corner.tangent);
+        for (i, (along, length)) in sides.iter().enumerate() {
+            let next = (i + 1) % n;
+            let from = std::array::from_fn(|k| points[i][k] + taken(i) * along[k]);
+            wire.push((length - taken(i) - taken(next)).max(0.0), Form::Straight { from, along: *along });
+            if let Some(Corner { diff, sum, .. }) = &corners[next] {
+                let (sine, cosine) = (norm(*diff), norm(*sum));
+                let outward = diff.map(|x| x / sine);
+                let away = 2.0 * radius / cosine;
+                let center = std::array::from_fn(|k| points[next][k] - away * outward[k]);
+                let half = libm::atan2(sine, cosine);
+                let across = sum.map(|x| x / cosine);
+                wire.push(2.0 * radius * half, Form::Arc { center, radius, outward, across, half });
+            }
+        }
+        Ok(wire)
+    }
+
+    fn push(&mut self, length: f64, form: Form) {
+        self.pieces.push(Piece { start: self.end, length, form });
+        self.end += length;
+    }
+
+    /// Where its parameter ends; it begins at 0.
+    pub(super) fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// c, c' and c" of each component.
+    pub(super) fn at<const D: usize>(&self, s: f64) -> [[f64; 3]; D] {
+        let s = if self.closed { s - self.end * (s / self.end).floor() } else { s };
+        let piece = &self.pieces[self.pieces.partition_point(|piece| piece.start <= s).saturating_sub(1)];
+        let u = s - piece.start;
+        match &piece.form {
+            Form::Straight { from, along } => std::array::from_fn(|k| [from[k] + along[k] * u, along[k], 0.0]),
+            Form::Arc { center, radius, outward, across, half } => {
+                let (sine, cosine) = libm::sincos(u / radius - half);
+                std::array::from_fn(|k| {
+                    let out = cosine * outward[k] + sine * across[k];
+                    [center[k] + radius * out, cosine * across[k] - sine * outward[k], -out / radius]
+                })
+            }
+        }
+    }
+
+    /// s*, where the wire is nearest to x.
+    pub(super) fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
+        let (mut nearest, mut foot) = (f64::INFINITY, 0.0);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let low = if i == 0 && !self.closed { f64::NEG_INFINITY } else { 0.0 };
+            let high = if i == self.pieces.len() - 1 && !self.closed { f64::INFINITY } else { piece.length };
+            let (u, square) = piece.form.foot(x, low, high);
+            if square < nearest {
+                (nearest, foot) = (square, piece.start + u);
+            }
+        }
+        foot
+    }
+
+    /// The parameters of the corners of a polygon that looks like the wire.
+    pub(super) fn drawn(&self) -> Vec<f64> {
+        let mut all = vec![0.0];
+        for Piece { start, length, form } in &self.pieces {
+            let cuts = match form {
+                Form::Straight { .. } => 1.0,
+                Form::Arc { half, .. } => (2.0 * half / DRAWN).ceil().max(1.0),
+            };
+            all.extend((1..=cuts as usize).map(|i| start + length * (i as f64 / cuts)));
+        }
+        all
+    }
+}
+
+impl Form {
+    /// u of the foot of x, held between two numbers on a straight piece and within an arc, and |x − c|² there.
+    fn foot<const D: usize>(&self, x: Point<D>, low: f64, high: f64) -> (f64, f64) {
+        let first = |v: &[f64; 3]| -> Point<D> { std::array::from_fn(|k| v[k]) };
+        match self {
+            Form::Straight { from, along } => {
+                let (w, along) = (minus(x, first(from)), first(along));
+                let u = dot(w, along).max(low).min(high);
+                let apart: Point<D> = std::array::from_fn(|k| w[k] - u * along[k]);
+                (u, dot(apart, apart))
+            }
+            Form::Arc { center, radius, outward, across, half } => {
+                let (w, o, a) = (minus(x, first(center)), first(outward), first(across));
+                let psi = libm::atan2(dot(w, a), dot(w, o)).max(-half).min(*half);
+                let (sine, cosine) = libm::sincos(psi);
+                let apart: Point<D> = std::array::from_fn(|k| w[k] - radius * (cosine * o[k] + sine * a[k]));
+                (radius * (psi + half), dot(apart, apart))
+            }
+        }
+    }
+}
+
+/// The corner from e to f at a point; `None` where the wire goes on straight.
+fn corner(e: [f64; 3], f: [f64; 3], point: usize) -> Result<Option<Corner>, String> {
+    let (diff, sum) = (minus(e, f), std::array::from_fn(|k| e[k] + f[k]));
+    let (sine, cosine) = (norm(diff), norm(sum));
+    if cosine <= FOLD {
+        return Err(format!("the wire folds back by 180° at points[{point}], where no arc turns it"));
+    }
+    Ok((sine > 0.0).then_some(Corner { diff, sum, tangent: sine / cosine }))
+}
+
+/// `Ok` if every straight piece is long enough for the arcs at its ends.
+fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Result<(), String> {
+    let tangent = |i: usize| corners[i % corners.len()].as_ref().map_or(0.0, |corner| corner.tangent);
+    // Where there is the least room, and the corner there that asks for more of it.
+    let mut tightest = (f64::INFINITY, 0);
+    for (i, (_, length)) in sides.iter().enumerate() {
+        let room = length / (tangent(i) + tangent(i + 1));
+        if room < tightest.0 {
+            let widest = if tangent(i) > tangent(i + 1) { i } else { i + 1 };
+            tightest = (room, widest % corners.len());
+        }
+    }
+    let (room, point) = tightest;
+    if radius <= room * (1.0 + ROUNDING) {
+        return Ok(());
+    }
+    let room = short(room);
+    Err(format!(
+        "a radius of {radius} m is too large for the corner at points[{point}]: the largest that fits is {room} m"
+    ))
+}
+
+/// A radius that still fits, in five digits.
+fn short(room: f64) -> f64 {
+    let rounded = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
+    if rounded(room) <= room * (1.0 + ROUNDING) { rounded(room) } else { rounded(room * (1.0 - 1e-4)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BENT: [[f64; 3]; 5] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 1.0], [0.5, 3.0, 1.0], [-1.0, 1.5, 0.5]];
+
+    fn apart(a: [[f64; 3]; 3], b: [[f64; 3]; 3], order: usize) -> f64 {
+        norm(std::array::from_fn::<f64, 3, _>(|k| a[k][order] - b[k][order]))
+    }
+
+    /// Where pieces meet c and c' are the same from both sides, also where a closed wire meets itself; everywhere |c'| = 1, c' and c" are what
+    /// differences say, and c" is 0 or 1/r.
+    #[test]
+    fn pieces_meet_with_one_derivative() {
+        for closed in [false, true] {
+            let wire = Polyline::new(&BENT, 0.3, closed).unwrap();
+            let ends = wire.pieces.iter().map(|piece| piece.start).filter(|start| closed || *start > 0.0);
+            for s in ends {
+                let (left, right) = (wire.at::<3>(s - 1e-9), wire.at::<3>(s + 1e-9));
+                // Over 2e-9 c changes by that, c' by that over the radius.
+                assert!(apart(left, right, 0) < 2.1e-9 && apart(left, right, 1) < 1e-8, "{closed} {s}");
+            }
+            for i in 0..500 {
+                let s = wire.end() * (i as f64 + 0.5) / 500.0;
+                let [at, before, after] = [s, s - 1e-6, s + 1e-6].map(|s| wire.at::<3>(s));
+                let speed = norm(at.map(|[_, c1, _]| c1));
+                let bend = norm(at.map(|[_, _, c2]| c2));
+                assert!((speed - 1.0).abs() < 1e-14, "{speed}");
+                assert!(bend == 0.0 || (bend - 1.0 / 0.3).abs() < 1e-13, "{bend}");
+                for k in 0..3 {
+                    // Central differences over 1e-6: roundoff of 1e-16 leaves 1e-10, third derivatives of 1/r² less.
+                    let slope = |order: usize| (after[k][order] - before[k][order]) / 2e-6;
+                    assert!((slope(0) - at[k][1]).abs() < 1e-8 && (slope(1) - at[k][2]).abs() < 1e-8, "{s}");
+                }
+            }
+        }
+    }
+
+    /// Beside the wire and off its arcs' planes no point of the wire is nearer than the foot, and the way there stands at right angles.
+    #[test]
+    fn the_foot_is_the_nearest_point() {
+        for closed in [false, true] {
+            let wire = Polyline::new(&BENT, 0.4, closed).unwrap();
+            for i in 0..200 {
+                let turn = f64::from(i);
+                let x = [1.5 * libm::sin(turn) + 0.8, 1.5 * libm::cos(1.7 * turn) + 1.2, libm::sin(2.3 * turn)];
+                let away = |s: f64| minus(x, wire.at::<3>(s).map(|[c, _, _]| c));
+                let foot = wire.foot(x);
+                let tangent = wire.at::<3>(foot).map(|[_, c1, _]| c1);
+                assert!(dot(away(foot), tangent).abs() < 1e-13, "{closed} {i}");
+                // An open one is straight for 2 m beyond its ends here.
+                let (low, high) = if closed { (0.0, wire.end()) } else { (-2.0, wire.end() + 2.0) };
+                for j in 0..=2000 {
+                    let s = low + (high - low) * f64::from(j) / 2000.0;
+                    assert!(norm(away(s)) >= norm(away(foot)) - 1e-14, "{closed} {i} {s}");
+                }
+            }
+        }
+    }
+
+    /// No place of the wire is farther from its polygon than an arc is from a chord of 5°, and straight pieces are drawn in one.
+    #[test]
+    fn what_is_drawn_is_round_and_cuts_no_corner() {
+        let wire = Polyline::new(&BENT, 0.3, false).unwrap();
+        let at = |s: f64| wire.at::<3>(s).map(|[c, _, _]| c);
+        let drawn = wire.drawn();
+        let straight = wire.pieces.iter().filter(|piece| matches!(piece.form, Form::Straight { .. }));
+        for Piece { start, length, .. } in straight {
+            assert!(drawn.windows(2).any(|pair| pair[0] == *start && pair[1] == start + length));
+        }
+        for pair in drawn.windows(2) {
+            let (a, chord) = (at(pair[0]), minus(at(pair[1]), at(pair[0])));
+            for i in 0..10 {
+                let w = minus(at(pair[0] + (pair[1] - pair[0]) * f64::from(i) / 10.0), a);
+                let u = dot(w, chord) / dot(chord, chord);
+                let off = norm(std::array::from_fn::<f64, 3, _>(|k| w[k] - u * chord[k]));
+                assert!(off <= 0.3 * (1.0 - libm::cos(0.5 * DRAWN)) + 1e-15, "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_bent_is_refused_with_the_place() {
+        let refused = |points: &[[f64; 3]], radius: f64, closed: bool, words: &str| {
+            let error = Polyline::new(points, radius, closed).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        };
+        let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        refused(&square[..2], 0.1, true, "needs 3 points, but has 2");
+        refused(&square, 0.0, true, "must be positive and finite, but is 0");
+        refused(&square, f64::NAN, true, "but is NaN");
+        refused(&[square[0], square[1], square[1]], 0.1, false, "points[1] and points[2] are at one place");
+        refused(&[square[0], square[1], square[0]], 0.1, true, "points[2] and points[0] are at one place");
+        refused(&[square[0], square[1], [0.5, 0.0, 0.0]], 0.1, false, "folds back by 180° at points[1]");
+        refused(&square, 0.6, true, "corner at points[1]: the largest that fits is 0.5 m");
+        // tan(π/8) + tan(π/4) of 1 m.
+        let narrow = [[0.0; 3], [4.0, 0.0, 0.0], [4.0, 1.0, 0.0], [0.0, 5.0, 0.0]];
+        refused(&narrow, 3.0, false, "corner at points[1]: the largest that fits is 0.70");
+    }
+
+    /// Arcs that meet leave nothing straight between them: a stadium, and a circle from a square.
+    #[test]
+    fn arcs_may_use_up_a_side() {
+        let points = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let stadium = Polyline::new(&points, 0.5, true).unwrap();
+        assert!((stadium.end() - 2.0 - std::f64::consts::PI).abs() < 1e-14);
+        let square = [[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
+        let circle = Polyline::new(&square, 1.0, true).unwrap();
+        for s in circle.drawn() {
+            assert!((norm(circle.at::<2>(s).map(|[c, _, _]| c)) - 1.0).abs() < 1e-15);
+        }
+    }
+}

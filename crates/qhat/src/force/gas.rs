@@ -1,0 +1,179 @@
+//! A gas inside a closed loop in the plane, or a closed mesh in space: its pressure follows what it fills.
+//!
+//! ```text
+//! A = Σ of what the facets enclose (pressure.rs),   p = p₀ (A₀/A)^γ,   p A^γ stays
+//! V = ∫ p dA from A to A₀ = p₀ A₀ ((A₀/A)^(γ−1) − 1)/(γ − 1) = p₀ A₀ expm1((1 − γ) l)/(γ − 1),   l = ln(A/A₀);   −p₀ A₀ l where γ = 1
+//! F = −∂V/∂x = p ∂A/∂x
+//! −∂F/∂x = −p ∂²A/∂x² + (γ p/A) (∂A/∂x)(∂A/∂x)ᵀ
+//! ```
+//!
+//! γ = 1 keeps the temperature; 7/5 is air that has no time to exchange heat, 5/3 a gas of single atoms; in space these are the usual ones. The last
+//! term couples every two particles of the gas, in methods that solve at the end of the step: hence the bound on their number. A gas keeps
+//! A above 0, with an energy that goes to infinity there where γ ≥ 1; beyond, its numbers are none, and an adaptive method turns back.
+
+use super::pressure::Facet;
+use super::{Acts, Dependence};
+use crate::linalg::block::outer;
+use crate::point::{Motion, Point, add, norm};
+use crate::stiffness::Stiffness;
+use crate::system::{Dimension, ParticleId};
+
+/// Particles of one gas, at most: every two of them are coupled.
+const MOST: usize = 200;
+
+/// A gas that a closed loop of edges or a closed mesh of triangles holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gas {
+    facets: Vec<Facet>,
+    /// The particles, each once.
+    particles: Vec<ParticleId>,
+    /// For each facet the numbers of its corners among the particles.
+    corners: Vec<[usize; 3]>,
+    pressure: f64,
+    exponent: f64,
+    content: f64,
+}
+
+impl Gas {
+    /// A gas of this pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q [m], flat, d numbers a particle, where it fills A₀. Edges must go round
+    /// counter-clockwise, and triangles as seen from outside. A particle beyond the positions makes A₀ NaN, which building a system refuses.
+    pub fn new(facets: Vec<Facet>, pressure: f64, exponent: f64, dimension: Dimension, q: &[f64]) -> Self {
+        let mut particles: Vec<ParticleId> = Vec::new();
+        let mut corners = Vec::with_capacity(facets.len());
+        for facet in &facets {
+            let mut numbers = [0; 3];
+            for (number, id) in numbers.iter_mut().zip(facet.corners()) {
+                *number = particles.iter().position(|known| known == id).unwrap_or_else(|| {
+                    particles.push(*id);
+                    particles.len() - 1
+                });
+            }
+            corners.push(numbers);
+            // What is too large is refused: no need to look for more.
+            if particles.len() > MOST {
+                break;
+            }
+        }
+        let mut gas = Gas { facets, particles, corners, pressure, exponent, content: f64::NAN };
+        if gas.particles.iter().all(|id| dimension.number() * (id.0 + 1) <= q.len()) {
+            gas.content = match dimension {
+                Dimension::Two => gas.enclosed::<2>(Motion { q, qd: q, t: 0.0 }),
+                Dimension::Three => gas.enclosed::<3>(Motion { q, qd: q, t: 0.0 }),
+            };
+        }
+        gas
+    }
+
+    /// What encloses it.
+    pub fn facets(&self) -> &[Facet] {
+        &self.facets
+    }
+
+    /// A₀ [m² or m³].
+    pub fn content(&self) -> f64 {
+        self.content
+    }
+
+    /// `Ok` if this is a gas that can be.
+    ///
+    /// # Errors
+    /// In words: what is wrong with its numbers or with what holds it.
+    pub fn check(&self) -> Result<(), String> {
+        for (what, number) in [("pressure", self.pressure), ("exponent", self.exponent)] {
+            if !(number > 0.0 && number.is_finite()) {
+                return Err(format!("the {what} of a gas must be positive and finite, but is {number}"));
+            }
+        }
+        if !(self.content > 0.0 && self.content.is_finite()) {
+            return Err(format!("a gas must fill more than nothing at the start, but fills {}", self.content));
+        }
+        if self.particles.len() > MOST {
+            return Err(format!("a gas is held by at most {MOST} particles, not {}", self.particles.len()));
+        }
+        self.facets.iter().try_for_each(Facet::check)
+    }
+
+    fn enclosed<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        self.facets.iter().map(|facet| facet.enclosed(motion)).sum()
+    }
+
+    /// p and A.
+    fn pressure<const D: usize>(&self, motion: Motion<'_, D>) -> (f64, f64) {
+        let A = self.enclosed(motion);
+        (self.pressure * libm::pow(self.content / A, self.exponent), A)
+    }
+
+    /// ∂A/∂x of each particle.
+    fn gradient<const D: usize>(&self, motion: Motion<'_, D>) -> [Point<D>; MOST] {
+        let mut gradient = [[0.0; D]; MOST];
+        for (facet, numbers) in self.facets.iter().zip(&self.corners) {
+            let mut numbers = numbers.iter();
+            facet.gradient(motion, &mut |_, share, v| {
+                if let Some(&number) = numbers.next() {
+                    (0..D).for_each(|k| gradient[number][k] += share * v[k]);
+                }
+            });
+        }
+        gradient
+    }
+}
+
+impl Acts for Gas {
+    fn add<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64], Q: &mut [f64]) {
+        let (p, _) = self.pressure(motion);
+        for facet in &self.facets {
+            facet.gradient(motion, &mut |particle, share, v| {
+                add::<D>(Q, particle, std::array::from_fn(|k| share * p * v[k]));
+            });
+        }
+    }
+
+    fn potential<const D: usize>(&self, motion: Motion<'_, D>, _: &[f64]) -> f64 {
+        let l = libm::log(self.enclosed(motion) / self.content);
+        let beyond = self.exponent - 1.0;
+        let reduced = if beyond == 0.0 { -l } else { libm::expm1(-beyond * l) / beyond };
+        self.pressure * self.content * reduced
+    }
+
+    fn power<const D: usize>(&self, _: Motion<'_, D>) -> f64 {
+        0.0
+    }
+
+    fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
+        let (p, A) = self.pressure(motion);
+        self.facets.iter().for_each(|facet| facet.bound(motion, p, bound));
+        let gradient = self.gradient(motion);
+        let all: f64 = gradient.iter().map(|g| norm(*g)).sum();
+        for (&particle, g) in self.particles.iter().zip(gradient) {
+            bound(particle, (self.exponent * p / A).abs() * norm(g) * all, 0.0);
+        }
+    }
+
+    fn dependence(&self) -> Dependence {
+        Dependence::Motion
+    }
+
+    fn tangent<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        _: f64,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
+    ) {
+        let (p, A) = self.pressure(motion);
+        self.facets.iter().for_each(|facet| facet.tangent(motion, p, visit));
+        let gradient = self.gradient(motion);
+        for (j, &other) in self.particles.iter().enumerate() {
+            for (i, &one) in self.particles[..=j].iter().enumerate() {
+                visit(one, other, Stiffness::Definite(outer(self.exponent * p / A, gradient[i], gradient[j])));
+            }
+        }
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        self.particles.clone()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        self.check()
+    }
+}
