@@ -120,27 +120,26 @@ export function traceBall(pen: Pen, mark: Mark): void {
   traceCircle(pen.context, x, y, mark.size * pen.camera.scale);
 }
 
-/** The rectangle, or the twelve edges in space. */
+/** The rectangle, or in space the faces that are seen: they lie side by side, so that all is filled alike. */
 export function traceBox({ context, camera }: Pen, { points }: Mark): void {
-  const corner = (i: number) =>
-    project(
-      camera,
-      [0, 1, 2].map((k) => points[k] + ((i >> k) & 1 ? 1 : -1) * points[3 + k]),
-      0,
-    );
-  const loops =
-    camera.dimension === 2
-      ? [[0, 1, 3, 2]]
-      : [
-          [0, 1, 3, 2],
-          [4, 5, 7, 6],
-          [0, 1, 5, 4],
-          [2, 3, 7, 6],
-        ];
-  for (const loop of loops) {
-    for (const [i, k] of loop.entries()) {
-      if (i === 0) context.moveTo(...corner(k));
-      else context.lineTo(...corner(k));
+  for (const axis of camera.dimension === 2 ? [2] : [0, 1, 2]) {
+    const side = Math.sign(camera.towards[axis]);
+    if (side === 0) continue;
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    // all the same way round on the screen: faces of two boxes add up and do not cancel
+    for (const [n, [a, b]] of [
+      [-1, -1],
+      [side, -side],
+      [1, 1],
+      [-side, side],
+    ].entries()) {
+      const corner = [points[0], points[1], points[2]];
+      corner[axis] += camera.dimension === 2 ? 0 : side * points[3 + axis];
+      corner[u] += a * points[3 + u];
+      corner[v] += b * points[3 + v];
+      const [x, y] = project(camera, corner, 0);
+      if (n === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
     }
     context.closePath();
   }
