@@ -23,11 +23,11 @@ export type {
   FormulationName,
   IntegratorFacts,
   IntegratorName,
+  Link,
   Mark,
   MarkKind,
   Nail,
   Projection,
-  Rod,
   Shipped,
   Spring,
   StepReport,
@@ -102,7 +102,7 @@ export class Simulation {
     return this.inner.velocities();
   }
 
-  /** N, one per rod, + is pull */
+  /** N, one per link, + is pull, 0 while slack */
   tension(): Float64Array {
     return attempt(() => this.inner.tension());
   }

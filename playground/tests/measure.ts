@@ -10,7 +10,7 @@ it.each(['chain-100', 'chain-1000', 'chain-10000', 'net', 'strandbeest'])('%s', 
   const { page } = await lab.open(`/?scene=${scene}`);
   const result = await page.evaluate(async (seconds) => {
     const { qhat } = window;
-    const rods = qhat.structure()!.rods.length;
+    const links = qhat.structure()!.links.length;
     qhat.reset();
     qhat.play();
     const started = performance.now();
@@ -32,11 +32,11 @@ it.each(['chain-100', 'chain-1000', 'chain-10000', 'net', 'strandbeest'])('%s', 
     const before = performance.now();
     for (let k = 0; k < steps; k += 1) qhat.step();
     const stepMs = (performance.now() - before) / steps;
-    return { rods, wall, frames, longest, time, lengthError, residual, stopped, stepMs, h };
+    return { links, wall, frames, longest, time, lengthError, residual, stopped, stepMs, h };
   }, SECONDS);
-  const { rods, wall, frames, longest, time, lengthError, residual, stopped, stepMs, h } = result;
+  const { links, wall, frames, longest, time, lengthError, residual, stopped, stepMs, h } = result;
   process.stdout.write(
-    `${scene}: ${rods} rods, ${(frames / wall).toFixed(1)} frames/s (longest frame ${longest.toFixed(0)} ms), ` +
+    `${scene}: ${links} links, ${(frames / wall).toFixed(1)} frames/s (longest frame ${longest.toFixed(0)} ms), ` +
       `${(time / wall).toFixed(2)} × real time, ${stepMs.toFixed(1)} ms a step of ${h} s with its panels, ` +
       `worst relative length error ${lengthError.toExponential(1)}, worst |C| ${residual.toExponential(1)}` +
       `${stopped ? `, stopped: ${stopped}` : ''}\n`,

@@ -11,7 +11,7 @@ const EXIT_CODES: &str = "Exit codes:
   2  bad input; nothing is written
   130  interrupted with Ctrl-C; what was reached is written and marked";
 
-/// Particles held together by exact constraints, and the tension in every rod.
+/// Particles held together by exact constraints, and the tension in every rod and rope.
 #[derive(Debug, Parser)]
 #[command(name = "qhat", version, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {

@@ -182,7 +182,7 @@ impl Findings {
             dimension: system.dimension(),
             particles: system.particle_count(),
             free_particles,
-            rods: system.rods().count(),
+            rods: system.links().filter(|link| link.is_rod()).count(),
             rows: system.row_count(),
             rows_on_free_particles: rows + open_rows,
             open_rows,

@@ -22,7 +22,7 @@ fn npz_holds_every_array_in_the_order_of_the_file() {
     assert_eq!(shape("multipliers"), [51, 1]);
     assert_eq!(shape("tension"), [51, 1]);
     assert_eq!(arrays["particle_ids"].texts(), ["hook", "bob"]);
-    assert_eq!((shape("row_names"), shape("rod_names"), shape("origin")), (vec![1], vec![1], vec![]));
+    assert_eq!((shape("row_names"), shape("link_names"), shape("origin")), (vec![1], vec![1], vec![]));
 
     let q = arrays["positions"].numbers();
     assert_eq!(q[..4], [0.0, 0.0, 1.0, 0.0], "the first frame is the start");
@@ -63,7 +63,7 @@ fn csv_holds_the_same_bits_as_npz() {
     assert_eq!(header[1..9], vectors);
     assert_eq!(header[9..13], ["hook.fx", "hook.fy", "bob.fx", "bob.fy"]);
     assert_eq!(header[13], format!("{}.multiplier", arrays["row_names"].texts()[0]));
-    assert_eq!(header[14], format!("{}.tension", arrays["rod_names"].texts()[0]));
+    assert_eq!(header[14], format!("{}.tension", arrays["link_names"].texts()[0]));
 
     let order = ["t", "positions", "velocities", "constraint_forces", "multipliers", "tension"];
     let arrays: Vec<(usize, Vec<f64>)> =
@@ -86,7 +86,7 @@ fn names_of_every_language_reach_both_formats() {
         folder.qhat(&["run", "bob.toml", "-o", output, "--frames", "1", "-q"]).well();
     }
     assert!(folder.read("bob.csv").lines().next().unwrap().ends_with(",стержень-(長い).tension"));
-    assert_eq!(npz::read(&folder.path("bob.npz"))["rod_names"].texts(), ["стержень-(長い)"]);
+    assert_eq!(npz::read(&folder.path("bob.npz"))["link_names"].texts(), ["стержень-(長い)"]);
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn scenes_come_from_stdin_by_name_and_as_json() {
     ran.well();
     let arrays = npz::read(&folder.path("one.npz"));
     assert_eq!(arrays["positions"].shape, [11, 1, 3]);
-    assert_eq!((arrays["multipliers"].shape[1], arrays["rod_names"].shape[0]), (0, 0), "no rows, no rods");
+    assert_eq!((arrays["multipliers"].shape[1], arrays["link_names"].shape[0]), (0, 0), "no rows, no links");
     folder.qhat(&["run", "pendulum", "--duration", "0.1"]).well();
     std::fs::create_dir(folder.path("pendulum")).unwrap();
     folder.qhat(&["run", "pendulum", "--duration", "0.1"]).well();

@@ -34,7 +34,7 @@ fn every_scene_says_what_there_is_to_see() {
         assert!(scene.description.len() >= 40, "{}: {:?}", shipped.name, scene.description);
         assert!(scene.expect.is_some(), "{} expects nothing", shipped.name);
         let expects_length = scene.expect.and_then(|expect| expect.max_relative_length_error);
-        if scene.settings.integrator.projects() && scene.system.rods().next().is_some() {
+        if scene.settings.integrator.projects() && scene.system.links().any(|link| link.is_rod()) {
             assert!(expects_length.is_some_and(|error| error <= 1e-10), "{} promises no length", shipped.name);
         }
     }

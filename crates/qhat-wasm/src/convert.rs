@@ -13,14 +13,16 @@ use wasm_bindgen::{JsCast, JsValue};
 /// J and A cross only where a person could read them: cells of the larger one, m × N.
 const LARGEST_GRID: usize = 4096;
 
-pub(crate) fn structure(system: &System, name: &str, description: &str) -> Structure {
-    let rods = system.rods().map(|rod| {
+pub(crate) fn structure(system: &System, name: &str, description: &str, duration: f64) -> Structure {
+    let length = |length: Option<f64>| length.map_or(JsValue::NULL, JsValue::from);
+    let links = system.links().map(|link| {
         Record::new()
-            .with("name", rod.name)
-            .with("a", rod.a.0 as u32)
-            .with("b", rod.b.0 as u32)
-            .with("length", rod.length)
-            .with("row", rod.row as u32)
+            .with("name", link.name)
+            .with("a", link.a.0 as u32)
+            .with("b", link.b.0 as u32)
+            .with("shortest", length(link.shortest))
+            .with("longest", length(link.longest))
+            .with("rows", list(link.rows.map(|row| row as u32)))
     });
     let nails = system.constraints().iter().filter_map(|named| match &named.constraint {
         Constraint::Nail(nail) => Some(
@@ -41,11 +43,12 @@ pub(crate) fn structure(system: &System, name: &str, description: &str) -> Struc
         .with("name", name)
         .with("description", description)
         .with("dimension", system.dimension() as u32)
+        .with("duration", duration)
         .with("particle_names", strings(system.particle_names()))
         .with("row_names", strings(system.row_names()))
         .with("masses", numbers(system.masses()))
         .with("fixed", list((0..system.particle_count()).map(|i| system.is_fixed(ParticleId(i)))))
-        .with("rods", list(rods))
+        .with("links", list(links))
         .with("nails", list(nails))
         .with("springs", list(springs))
         .finish()

@@ -86,6 +86,7 @@ pub struct Simulation {
     inner: qhat::Simulation,
     name: String,
     description: String,
+    duration: f64,
 }
 
 #[wasm_bindgen]
@@ -97,12 +98,12 @@ impl Simulation {
         let scene = qhat_scene::load(text, source_name, Format::from_path(source_name))
             .map_err(|cause| error("SceneErrors", cause))?;
         let inner = scene.simulation().map_err(|cause| error("StepError", cause))?;
-        Ok(Simulation { inner, name: scene.name, description: scene.description })
+        Ok(Simulation { inner, name: scene.name, description: scene.description, duration: scene.duration })
     }
 
     /// What the scene is made of, in its present forms.
     pub fn structure(&self) -> Structure {
-        convert::structure(self.inner.system(), &self.name, &self.description)
+        convert::structure(self.inner.system(), &self.name, &self.description, self.duration)
     }
 
     /// What holds the particles beside rods, nails and springs, as it is at a time \[s\].
@@ -125,7 +126,7 @@ impl Simulation {
         self.inner.state().velocities().to_vec()
     }
 
-    /// Tension of every rod \[N\], positive where it pulls.
+    /// Tension of every link \[N\], positive where it pulls, 0 while slack.
     pub fn tension(&mut self) -> Vec<f64> {
         self.inner.tension()
     }

@@ -33,14 +33,17 @@ export interface Shipped {
   text: string;
 }
 
-export interface Rod {
+/** What acts along the line of two particles and has a tension: a rod, a rope, a strut. */
+export interface Link {
   name: string;
   a: number;
   b: number;
-  /** m */
-  length: number;
-  /** which multiplier is its own */
-  row: number;
+  /** the least its ends are apart, m; null for a rope */
+  shortest: number | null;
+  /** the most its ends are apart, m; null for a strut that lets them go; of a rod both are its length */
+  longest: number | null;
+  /** which multipliers are its own; of two limits the longest comes first */
+  rows: number[];
 }
 
 export interface Nail {
@@ -61,7 +64,7 @@ export interface Spring {
 export type MarkKind =
   /** taut at its length, slack below [a, b; ; length] */
   | 'rope'
-  /** pushes at its length, nothing beyond [a, b; ; length] */
+  /** pushes at its length, loose beyond, to its other limit if it has one [a, b; ; length] */
   | 'strut'
   /** a rod whose length or other end is led [a, b; ; length] or [a; b; length] */
   | 'rod'
@@ -115,12 +118,14 @@ export interface Structure {
   name: string;
   description: string;
   dimension: 2 | 3;
+  /** how long the scene is meant to run, s */
+  duration: number;
   particle_names: string[];
   row_names: string[];
   /** kg */
   masses: Float64Array;
   fixed: boolean[];
-  rods: Rod[];
+  links: Link[];
   nails: Nail[];
   springs: Spring[];
 }
@@ -222,7 +227,7 @@ export interface Terms {
   multipliers: Float64Array;
   constraint_forces: Float64Array;
   accelerations: Float64Array;
-  /** N, one per rod, signed: + is pull */
+  /** N, one per link, signed: + is pull, 0 while slack */
   tension: Float64Array;
   /** one per row: it takes no part (an open contact, what is broken) */
   is_open: boolean[];

@@ -65,7 +65,7 @@ pub use body::Body;
 pub use cluster::rigid_rods;
 pub use constraint::{
     Anchor, Angle, Area, Barrier, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint,
-    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Nail, NailForm, OnCircle, OnCurve,
+    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, OnCircle, OnCurve,
     OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
 };
 pub use ensemble::step_all;
@@ -84,5 +84,5 @@ pub use settings::{Feedback, Integrator, Settings};
 pub use simulation::Simulation;
 pub use softness::SoftRow;
 pub use state::{State, Work};
-pub use system::{Dimension, NamedConstraint, Particle, ParticleId, Rod, System, SystemBuilder};
+pub use system::{Dimension, NamedConstraint, Particle, ParticleId, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

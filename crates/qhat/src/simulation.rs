@@ -141,7 +141,7 @@ impl Simulation {
         self.workspace.terms(&self.system, &self.state, &feedback)
     }
 
-    /// Signed tension of every rod at the present state, as applied [N].
+    /// Signed tension of every link ([`System::links`]) at the present state, as applied [N].
     pub fn tension(&mut self) -> Vec<f64> {
         let feedback = self.feedback_in_use();
         self.workspace.tension(&self.system, &self.state, &feedback)

@@ -1,6 +1,6 @@
 //! Terms: every symbol of one evaluation of the equation, in the order in which they are computed. The glass box.
 
-use crate::constraint::{Distance, Jacobian};
+use crate::constraint::Jacobian;
 use crate::integrate::Workspace;
 use crate::linalg::SymmetricMatrix;
 use crate::multiplier::Equation;
@@ -49,7 +49,7 @@ pub struct Terms {
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,
-    /// Signed tension of every rod, as applied, positive where it pulls its ends together [N].
+    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied, positive where it pulls its ends together [N].
     pub tension: Vec<f64>,
     /// Whether a row takes no part: an open contact, friction that is not needed to hold, what is broken; m.
     pub is_open: Vec<bool>,
@@ -107,7 +107,7 @@ pub const NOTATION: [Notation; 21] = [
     row("λ", "lambda", "multipliers", "m", "J/[C]", "multiplier/factor.rs"),
     row("Q̂", "Q_hat", "constraint_forces", "N", "N", "multiplier/reaction.rs"),
     row("q̈", "qdd", "accelerations", "N", "m/s²", "multiplier/reaction.rs"),
-    row("T", "tension", "tension", "rods", "N", "constraint/distance.rs"),
+    row("T", "tension", "tension", "links", "N", "constraint/link.rs"),
     row("λ off", "off", "is_open", "m", "1", "switching/modes.rs"),
     row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
 ];
@@ -136,7 +136,7 @@ impl Workspace {
         collect(system, state, equation, tension)
     }
 
-    /// Signed tension of every rod [N], as applied.
+    /// Signed tension of every link [N], as applied.
     pub(crate) fn tension(&mut self, system: &System, state: &State, feedback: &Feedback) -> Vec<f64> {
         in_dimension!(system.dimension, D => {
             let equation = self.solve::<D>(system, state, feedback);
@@ -178,10 +178,8 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
     }
 }
 
-/// Signed tension of every rod [N] for given multipliers, as applied: s λ, or λ for a rod that gives way.
+/// Signed tension of every link [N] for given multipliers, as applied.
 fn tension<const D: usize>(system: &System, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> Vec<f64> {
-    let rods =
-        system.constraints.iter().filter_map(|named| Some((named.constraint.as_rod()?, lambda[named.first_row])));
-    let applied = |rod: &Distance| if rod.compliance > 0.0 { 1.0 } else { s };
-    rods.map(|(rod, multiplier)| rod.tension(motion, applied(rod) * multiplier)).collect()
+    let links = system.constraints.iter().filter_map(|named| Some((named.constraint.as_link()?, named.first_row)));
+    links.map(|(link, first_row)| link.tension(motion, &lambda[first_row..], s)).collect()
 }

@@ -124,7 +124,7 @@ fn lambda_of_a_nail_is_its_force_on_the_particle() {
         assert_close("λ", *lambda, expected, 1e-14 * MG);
     }
     assert_eq!(terms.constraint_forces, terms.multipliers);
-    assert!(terms.tension.is_empty(), "a nail is no rod");
+    assert!(terms.tension.is_empty(), "a nail is no link");
 }
 
 /// The source's nail holds a particle only from outside: away from p its λ pulls back, λ J = −F.

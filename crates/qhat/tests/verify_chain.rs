@@ -119,7 +119,7 @@ fn truss_chords_by_the_method_of_sections() {
         let x = i as f64 + 0.5;
         let moment: f64 = (0..nodes).map(|k| 0.5 * k as f64).filter(|at| *at < x).map(|at| w * (x - at)).sum();
         let name = format!("n{}-n{}", 2 * i, 2 * i + 2);
-        let rod = system.rods().position(|rod| rod.name == name).unwrap();
+        let rod = system.links().position(|rod| rod.name == name).unwrap();
         // Its conditioning multiplies roundoff by about 1e3.
         assert_close(&name, terms.tension[rod], (reaction * x - moment) / height, 1e-11 * reaction);
     }

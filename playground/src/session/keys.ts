@@ -11,7 +11,7 @@ export const KEYS: readonly [string, string][] = [
   ['r', 'reset to the start'],
   ['< >', 'slower, faster'],
   ['[ ]', 'previous, next particle'],
-  ['{ }', 'previous, next rod'],
+  ['{ }', 'previous, next rod or rope'],
   ['Arrows', 'pull the selected particle; with none selected, move the view'],
   ['Shift + arrows', 'turn a 3D view'],
   ['+ −', 'zoom'],
@@ -92,7 +92,7 @@ export class Keys {
         return true;
       case '{':
       case '}':
-        this.next('rod', event.key === '}' ? 1 : -1);
+        this.next('link', event.key === '}' ? 1 : -1);
         return true;
       case '+':
       case '=':
@@ -131,9 +131,9 @@ export class Keys {
     this.session.setSpeed(SPEEDS[Math.max(0, Math.min(SPEEDS.length - 1, index + by))]);
   }
 
-  private next(kind: 'particle' | 'rod', by: number): void {
+  private next(kind: 'particle' | 'link', by: number): void {
     const { structure, selection } = this.session;
-    const count = kind === 'particle' ? (structure?.masses.length ?? 0) : (structure?.rods.length ?? 0);
+    const count = kind === 'particle' ? (structure?.masses.length ?? 0) : (structure?.links.length ?? 0);
     if (count === 0) return;
     const index = selection?.kind === kind ? selection.index + by : by > 0 ? 0 : count - 1;
     this.session.select({ kind, index: (index + count) % count } as Selection);

@@ -13,7 +13,7 @@ const GROWTH = 2.5;
 
 /** The box around the start and the first seconds of motion. */
 export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
-  const { dimension } = structure;
+  const { dimension, duration } = structure;
   const still = emptyBox(dimension);
   include(still, simulation.positions());
   for (const nail of structure.nails) include(still, nail.at.slice(0, dimension));
@@ -24,7 +24,8 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
 
   const { h } = simulation.controls();
   const particles = Math.max(1, structure.masses.length);
-  const frames = Math.min(AHEAD / h, EFFORT / particles);
+  // what comes after the scene's own time is nothing to make room for
+  const frames = Math.min(Math.min(AHEAD, duration) / h, EFFORT / particles);
   const run = Run.open(simulation.text, simulation.sourceName);
   for (let frame = 0; frame < frames && run.step(); frame += 1) {
     if (frame % 4 === 0) include(box, run.simulation.positions());

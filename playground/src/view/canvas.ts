@@ -1,6 +1,7 @@
 // Draws one Picture on the canvas, back to front: grid, ghost, what holds particles, springs, rods, nails, particles, the hand.
 
-import type { Rod, Structure } from '../engine';
+import type { Link, Structure } from '../engine';
+import { isRod } from '../session/links';
 import type { Camera } from './camera';
 import { drawGrid, drawScale } from './grid';
 import { drawHolds } from './holds';
@@ -71,8 +72,8 @@ export class CanvasView {
     this.place(picture.positions, camera);
     drawHolds(this.context, picture, this.screen, camera, this.palette);
     this.drawSprings(picture.structure);
-    if (camera.dimension === 3) this.drawRodsByDepth(picture);
-    else this.drawRodsByColour(picture);
+    if (camera.dimension === 3) this.drawLinksByDepth(picture);
+    else this.drawLinksByColour(picture);
     this.drawNails(picture, camera);
     this.drawParticles(picture, camera);
     this.drawHand(picture, camera);
@@ -80,7 +81,7 @@ export class CanvasView {
     drawScale(this.context, camera, this.palette);
   }
 
-  /** What lies under a screen point: the nearest particle in reach, else the nearest rod. */
+  /** What lies under a screen point: the nearest particle in reach, else the nearest link. */
   pick(
     structure: Structure,
     positions: Float64Array,
@@ -98,11 +99,11 @@ export class CanvasView {
       if (away < nearest) [nearest, best] = [away, { kind: 'particle', index: i }];
     }
     if (best) return best;
-    // a rod is thin: a smaller reach keeps empty canvas empty
+    // a link is thin: a smaller reach keeps empty canvas empty
     nearest = reach / 2;
-    for (const [index, { a, b }] of structure.rods.entries()) {
+    for (const [index, { a, b }] of structure.links.entries()) {
       const away = distanceToSegment(x, y, this.screen, 3 * a, 3 * b);
-      if (away < nearest) [nearest, best] = [away, { kind: 'rod', index }];
+      if (away < nearest) [nearest, best] = [away, { kind: 'link', index }];
     }
     return best;
   }
@@ -121,12 +122,15 @@ export class CanvasView {
    * never hide the rods between them.
    */
   private measure(structure: Structure, camera: Camera): void {
-    const { masses, rods } = structure;
-    if (this.radiiOf !== structure)
-      this.meanRod = rods.reduce((sum, { length }) => sum + length, 0) / Math.max(1, rods.length);
+    const { masses, links } = structure;
+    if (this.radiiOf !== structure) {
+      const lengths = links.filter(isRod).map(({ longest }) => longest!);
+      this.meanRod = lengths.reduce((sum, length) => sum + length, 0) / lengths.length;
+    }
+    // not a number where there are no rods
     const shown = this.meanRod * camera.scale;
-    this.crowded = rods.length > 0 && shown < 2 * LEAST_RADIUS;
-    const most = rods.length > 0 ? Math.max(LEAST_RADIUS, ROD_SHARE * shown) : Infinity;
+    this.crowded = shown < 2 * LEAST_RADIUS;
+    const most = this.meanRod > 0 ? Math.max(LEAST_RADIUS, ROD_SHARE * shown) : Infinity;
     if (this.radiiOf === structure && this.radiiMost === most) return;
     this.radiiOf = structure;
     this.radiiMost = most;
@@ -139,8 +143,8 @@ export class CanvasView {
     );
   }
 
-  private rodWidth(structure: Structure): number {
-    return structure.rods.length > 300 ? 2 : structure.rods.length > 60 ? 2.75 : 3.5;
+  private linkWidth({ links }: Structure): number {
+    return links.length > 300 ? 2 : links.length > 60 ? 2.75 : 3.5;
   }
 
   private drawGhost(picture: Picture, ghost: Float64Array, camera: Camera): void {
@@ -151,7 +155,7 @@ export class CanvasView {
     context.lineWidth = 2;
     context.setLineDash([5, 4]);
     context.beginPath();
-    for (const { a, b } of picture.structure.rods) this.traceLine(a, b);
+    for (const { a, b } of picture.structure.links.filter(isRod)) this.traceLine(a, b);
     for (const { a, b } of picture.structure.springs) this.traceLine(a, b);
     context.stroke();
     context.setLineDash([]);
@@ -184,14 +188,16 @@ export class CanvasView {
     context.stroke();
   }
 
-  /** One path per colour: a thousand rods cost forty strokes. */
-  private drawRodsByColour(picture: Picture): void {
+  /** One path per colour: a thousand links cost forty strokes. */
+  private drawLinksByColour(picture: Picture): void {
     const { context } = this;
-    const { rods } = picture.structure;
-    const byStep: Rod[][] = Array.from({ length: TENSION_STEPS }, () => []);
-    for (let i = 0; i < rods.length; i += 1)
-      byStep[tensionStep(picture.tension[i], picture.tensionLimit)].push(rods[i]);
-    context.lineWidth = this.rodWidth(picture.structure);
+    const { links } = picture.structure;
+    const byStep: Link[][] = Array.from({ length: TENSION_STEPS }, () => []);
+    for (let i = 0; i < links.length; i += 1) {
+      if (isStraight(links[i], picture.tension[i]))
+        byStep[tensionStep(picture.tension[i], picture.tensionLimit)].push(links[i]);
+    }
+    context.lineWidth = this.linkWidth(picture.structure);
     context.lineCap = 'round';
     context.lineJoin = 'round';
     for (let step = 0; step < TENSION_STEPS; step += 1) {
@@ -201,17 +207,18 @@ export class CanvasView {
       traceChains(context, this.screen, byStep[step]);
       context.stroke();
     }
-    this.drawRodMarks(picture);
+    this.drawLinkMarks(picture);
   }
 
-  /** Far rods first, thinner and paler: the depth cue of a view without perspective. */
-  private drawRodsByDepth(picture: Picture): void {
+  /** Far links first, thinner and paler: the depth cue of a view without perspective. */
+  private drawLinksByDepth(picture: Picture): void {
     const { context, screen } = this;
-    const { rods } = picture.structure;
+    const { links } = picture.structure;
     const [near, far] = this.depthRange();
-    const depth = rods.map(({ a, b }) => (screen[3 * a + 2] + screen[3 * b + 2]) / 2);
-    const order = rods.map((_, i) => i).sort((i, j) => depth[i] - depth[j]);
-    const width = this.rodWidth(picture.structure);
+    const depth = links.map(({ a, b }) => (screen[3 * a + 2] + screen[3 * b + 2]) / 2);
+    const order = links.map((_, i) => i).filter((i) => isStraight(links[i], picture.tension[i]));
+    order.sort((i, j) => depth[i] - depth[j]);
+    const width = this.linkWidth(picture.structure);
     context.lineCap = 'round';
     for (const i of order) {
       const part = (depth[i] - far) / (near - far || 1);
@@ -219,11 +226,11 @@ export class CanvasView {
       context.lineWidth = width * (0.6 + 0.6 * part);
       context.strokeStyle = this.colours[tensionStep(picture.tension[i], picture.tensionLimit)];
       context.beginPath();
-      this.traceLine(rods[i].a, rods[i].b);
+      this.traceLine(links[i].a, links[i].b);
       context.stroke();
     }
     context.globalAlpha = 1;
-    this.drawRodMarks(picture);
+    this.drawLinkMarks(picture);
   }
 
   private depthRange(): [number, number] {
@@ -235,15 +242,15 @@ export class CanvasView {
     return [near, far];
   }
 
-  private drawRodMarks(picture: Picture): void {
+  private drawLinkMarks(picture: Picture): void {
     for (const [mark, alpha] of [[picture.hover, 0.25] as const, [picture.selection, 0.55] as const]) {
-      if (mark?.kind !== 'rod') continue;
-      const rod = picture.structure.rods[mark.index];
+      if (mark?.kind !== 'link') continue;
+      const { a, b } = picture.structure.links[mark.index];
       this.context.globalAlpha = alpha;
       this.context.strokeStyle = this.palette.accent;
-      this.context.lineWidth = this.rodWidth(picture.structure) + 7;
+      this.context.lineWidth = this.linkWidth(picture.structure) + 7;
       this.context.beginPath();
-      this.traceLine(rod.a, rod.b);
+      this.traceLine(a, b);
       this.context.stroke();
       this.context.globalAlpha = 1;
     }
@@ -339,6 +346,11 @@ export class CanvasView {
       drawArrow(context, screen[3 * particle], screen[3 * particle + 1], dx, dy, label);
     }
   }
+}
+
+/** A rod always, a rope or a strut while it carries something: without, it is drawn as the mark that it is. */
+function isStraight(link: Link, tension: number): boolean {
+  return isRod(link) || Math.abs(tension) > 0;
 }
 
 function distanceToSegment(x: number, y: number, flat: Float64Array, a: number, b: number): number {

@@ -1,4 +1,4 @@
-// The shapes of marks that take more than a line: hatched ground, a patch of a plane, a ring in space, a piston.
+// The shapes of marks that are more than a line: ground, planes, balls, boxes, rings, wheels, areas, a piston.
 
 import type { Mark } from '../engine';
 import { niceCeiling } from '../session/numbers';
@@ -13,13 +13,10 @@ const PLANE_CELLS = 8;
 /** A ring on a screen of a thousand pixels is within a pixel of this many straight pieces. */
 const RING_PIECES = 96;
 
-/** In the plane a line across the canvas, hatched below; in space a patch of the plane. */
+/** In the plane a line across the canvas, hatched below; in space ground is a plane. */
 export function traceGround(pen: Pen, mark: Mark): void {
   const { context, camera } = pen;
-  if (camera.dimension === 3) {
-    tracePlane(pen, mark);
-    return;
-  }
+  if (camera.dimension === 3) return;
   const [x, y] = project(camera, mark.points, 0);
   // the screen's y points down
   const [nx, ny] = [mark.points[3], -mark.points[4]];
@@ -41,6 +38,7 @@ export function traceGround(pen: Pen, mark: Mark): void {
 
 /** Lines of a grid in a plane, around where it is nearest to the middle of the view. */
 export function tracePlane({ context, camera }: Pen, { points }: Mark): void {
+  if (camera.dimension === 2) return;
   const point = [points[0], points[1], points[2]];
   const [n, u, v] = frame([points[3], points[4], points[5]]);
   const cell = niceCeiling(PLANE_CELL / camera.scale);
@@ -64,10 +62,26 @@ export function tracePlane({ context, camera }: Pen, { points }: Mark): void {
 }
 
 export function traceRing(pen: Pen, mark: Mark): void {
+  traceAround(pen, mark, Array.from(mark.points.subarray(mark.points.length - 3)));
+}
+
+/** Of a ball in space the circles across the three axes: without them it is a disc. */
+export function traceGreatCircles(pen: Pen, mark: Mark): void {
+  if (pen.camera.dimension === 2) return;
+  for (const k of [0, 1, 2]) {
+    traceAround(
+      pen,
+      mark,
+      [0, 1, 2].map((j) => (j === k ? 1 : 0)),
+    );
+  }
+}
+
+/** A circle about the first end of a mark, across an axis. */
+function traceAround(pen: Pen, mark: Mark, axis: number[]): void {
   const { context, camera } = pen;
   const [x, y] = ends(pen, mark);
-  const axis = mark.points.subarray(mark.points.length - 3);
-  const [, u, v] = frame([axis[0], axis[1], axis[2]]);
+  const [, u, v] = frame(axis);
   const radius = mark.size * camera.scale;
   const reach = (to: Vec3, along: Vec3) => radius * dot(to, along);
   for (let i = 0; i < RING_PIECES; i += 1) {
@@ -85,6 +99,59 @@ export function traceActuator(pen: Pen, mark: Mark): void {
   const [ax, ay, bx, by] = ends(pen, mark);
   pen.context.moveTo(ax, ay);
   pen.context.lineTo((ax + bx) / 2, (ay + by) / 2);
+}
+
+export function traceArea({ context, screen }: Pen, { particles }: Mark): void {
+  for (const [i, particle] of particles.entries()) {
+    const [x, y] = [screen[3 * particle], screen[3 * particle + 1]];
+    if (i === 0) context.moveTo(x, y);
+    else context.lineTo(x, y);
+  }
+  context.closePath();
+}
+
+function traceCircle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.moveTo(x + radius, y);
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
+export function traceBall(pen: Pen, mark: Mark): void {
+  const [x, y] = ends(pen, mark);
+  traceCircle(pen.context, x, y, mark.size * pen.camera.scale);
+}
+
+/** The rectangle, or in space the faces that are seen: they lie side by side, so that all is filled alike. */
+export function traceBox({ context, camera }: Pen, { points }: Mark): void {
+  for (const axis of camera.dimension === 2 ? [2] : [0, 1, 2]) {
+    const side = Math.sign(camera.towards[axis]);
+    if (side === 0) continue;
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    // all the same way round on the screen: faces of two boxes add up and do not cancel
+    for (const [n, [a, b]] of [
+      [-1, -1],
+      [side, -side],
+      [1, 1],
+      [-side, side],
+    ].entries()) {
+      const corner = [points[0], points[1], points[2]];
+      corner[axis] += camera.dimension === 2 ? 0 : side * points[3 + axis];
+      corner[u] += a * points[3 + u];
+      corner[v] += b * points[3 + v];
+      const [x, y] = project(camera, corner, 0);
+      if (n === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
+    }
+    context.closePath();
+  }
+}
+
+export function traceWheel(pen: Pen, mark: Mark): void {
+  const [x, y, rimX, rimY] = ends(pen, mark);
+  const radius = mark.size * pen.camera.scale;
+  traceCircle(pen.context, x, y, radius);
+  const angle = Math.atan2(rimY - y, rimX - x);
+  pen.context.moveTo(x, y);
+  pen.context.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
 }
 
 /** The unit vector of a direction and two across it. */

@@ -2,7 +2,7 @@
 
 import type { Mark, Structure } from '../engine';
 
-export type Selection = { kind: 'particle'; index: number } | { kind: 'rod'; index: number } | null;
+export type Selection = { kind: 'particle'; index: number } | { kind: 'link'; index: number } | null;
 
 export interface Arrow {
   particle: number;
@@ -19,7 +19,7 @@ export interface Picture {
   marks: Mark[];
   /** the way things fall, a unit vector */
   down: number[];
-  /** N, one per rod */
+  /** N, one per link */
   tension: Float64Array;
   /** N at the ends of the colour scale */
   tensionLimit: number;

@@ -163,7 +163,7 @@ export class Stage {
       return this.session.run!.simulation.tension();
     } catch {
       // a state at which λ does not exist has no tension to colour; the session says so in words
-      return new Float64Array(this.session.structure!.rods.length).fill(Number.NaN);
+      return new Float64Array(this.session.structure!.links.length).fill(Number.NaN);
     }
   }
 

@@ -79,7 +79,7 @@ it('shows J, A, λ and the four terms of b', async () => {
   const text = await page.getByTestId('terms').innerText();
   for (const symbol of ['λ', '−γ', '−JWQ', '−ks C', '−kd Ċ', 'J = ∂C/∂q', 'A = J W Jᵀ'])
     expect(text).toContain(symbol);
-  const rod = await page.evaluate(() => window.qhat.structure()!.rods[0].row);
+  const rod = await page.evaluate(() => window.qhat.structure()!.links[0].rows[0]);
   const lambda = await page.evaluate((row) => window.qhat.terms()!.multipliers[row], rod);
   const shown = Number((await page.getByTestId(`lambda-${rod}`).innerText()).replace('−', '-'));
   // shown to three digits

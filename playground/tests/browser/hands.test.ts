@@ -1,3 +1,4 @@
+import type { Page } from 'playwright-core';
 import { expect, it } from 'vitest';
 import { atStart, laboratory, lengthError, state, step } from './page';
 
@@ -89,6 +90,53 @@ it('shows the numbers of a particle and of a rod that are clicked', async () => 
   const shown = (await page.getByTestId('tension').innerText()).replace('−', '-');
   // shown to three decimals
   expect(Math.abs(Number.parseFloat(shown) - tension)).toBeLessThan(6e-4);
+});
+
+/** Red, green and blue of the picture in the middle between two particles. */
+const colourBetween = (page: Page, a: number, b: number) =>
+  page.evaluate(
+    ([i, k]) => {
+      const [[ax, ay], [bx, by]] = [window.qhat.screen(i), window.qhat.screen(k)];
+      const canvas = document.querySelector<HTMLCanvasElement>('canvas')!;
+      const { left, top, width } = canvas.getBoundingClientRect();
+      const scale = canvas.width / width;
+      const [x, y] = [((ax + bx) / 2 - left) * scale, ((ay + by) / 2 - top) * scale];
+      return Array.from(canvas.getContext('2d')!.getImageData(x, y, 1, 1).data).slice(0, 3);
+    },
+    [a, b],
+  );
+
+it('colours ropes that pull, lets slack ones hang, and shows their numbers', async () => {
+  const { page } = await lab.open('/?scene=dropped-bridge', { colorScheme: 'light' });
+  await atStart(page);
+  await step(page, 60);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const links = await page.evaluate(() => window.qhat.structure()!.links);
+  const { tension } = await state(page);
+  expect(tension.length).toBe(links.length);
+  const ropes = links
+    .map((link, i) => ({ ...link, tension: tension[i] }))
+    .filter(({ shortest }) => !shortest);
+  const taut = ropes.reduce((best, rope) => (rope.tension > best.tension ? rope : best));
+  const slack = ropes.filter((rope) => rope.tension === 0);
+  expect(taut.tension).toBeGreaterThan(1);
+  expect(slack.length).toBeGreaterThan(0);
+  // pull is blue, the straight line of a slack rope is empty canvas
+  const [red, , blue] = await colourBetween(page, taut.a, taut.b);
+  expect(blue - red).toBeGreaterThan(80);
+  const [r, g, b] = await colourBetween(page, slack[0].a, slack[0].b);
+  expect(Math.max(r, g, b) - Math.min(r, g, b)).toBeLessThan(20);
+
+  const ends = await page.evaluate(
+    ([i, k]) => [window.qhat.screen(i), window.qhat.screen(k)],
+    [taut.a, taut.b],
+  );
+  await page.mouse.click((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
+  const inspector = await page.getByTestId('inspector').innerText();
+  expect(inspector).toContain(`rope, at most ${Number(taut.longest!.toPrecision(3))} m`);
+  expect(inspector).toContain('pull');
+  const shown = (await page.getByTestId('tension').innerText()).replace('−', '-');
+  expect(Math.abs(Number.parseFloat(shown) - taut.tension)).toBeLessThan(6e-4);
 });
 
 it('answers to the keyboard', async () => {

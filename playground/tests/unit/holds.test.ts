@@ -77,6 +77,18 @@ it('hatches the ground below its line', () => {
   expect(ends.every((call) => Number(call.split(',')[1]) > 400)).toBe(true);
 });
 
+it('draws a box as one filled rectangle', () => {
+  const points = Float64Array.from([1, 0, 0, 0.5, 0.25, 0]);
+  expect(drawn({ kind: 'box', particles: [], points }).slice(0, 6)).toEqual([
+    'M450,325',
+    'L550,325',
+    'L550,275',
+    'L450,275',
+    'Z',
+    'fill',
+  ]);
+});
+
 it('puts scenes under their headings in the order in which they come', () => {
   const scene = (name: string, group: string) => ({ name, group, title: name, text: '' });
   const groups = grouped([scene('a', 'one'), scene('b', 'two'), scene('c', 'one')]);

@@ -44,8 +44,9 @@ struct Carried {
 impl Tally {
     /// Notes the start: what is violated there counts as well.
     pub(super) fn start(&mut self, system: &System, terms: &Terms) {
-        for rod in system.rods().filter(|rod| system.is_rigid(rod.row)) {
-            let relative = terms.residual[rod.row].abs() / system.row_scales()[rod.row];
+        let rods = system.links().filter(|link| link.is_rod()).map(|rod| rod.rows.start);
+        for row in rods.filter(|&row| system.is_rigid(row)) {
+            let relative = terms.residual[row].abs() / system.row_scales()[row];
             self.max_relative_length_error = self.max_relative_length_error.max(relative);
         }
     }

@@ -58,7 +58,7 @@ impl Recorder {
     }
 }
 
-/// `t`, then `bob.x` … of all particles, `bob.vx` …, the constraint forces `bob.fx` …, `row.multiplier` …, `rod.tension` ….
+/// `t`, then `bob.x` … of all particles, `bob.vx` …, the constraint forces `bob.fx` …, `row.multiplier` …, `link.tension` ….
 fn columns(system: &System) -> Vec<String> {
     let mut columns = vec!["t".to_owned()];
     for quantity in ["", "v", "f"] {
@@ -67,6 +67,6 @@ fn columns(system: &System) -> Vec<String> {
         }
     }
     columns.extend(system.row_names().iter().map(|row| format!("{row}.multiplier")));
-    columns.extend(system.rods().map(|rod| format!("{}.tension", rod.name)));
+    columns.extend(system.links().map(|link| format!("{}.tension", link.name)));
     columns
 }

@@ -40,7 +40,7 @@ pub(crate) struct Recorder {
 impl Recorder {
     pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
         let (n, d, m) = (system.particle_count(), system.dimension(), system.row_count());
-        let rods: Vec<String> = system.rods().map(|rod| rod.name.to_owned()).collect();
+        let links: Vec<String> = system.links().map(|link| link.name.to_owned()).collect();
         let array = |name, shape: &[usize]| -> Result<Array, Failure> {
             Ok(Array { name, shape: shape.to_vec(), file: BufWriter::new(target.scratch()?) })
         };
@@ -50,12 +50,12 @@ impl Recorder {
             array("velocities", &[n, d])?,
             array("constraint_forces", &[n, d])?,
             array("multipliers", &[m])?,
-            array("tension", &[rods.len()])?,
+            array("tension", &[links.len()])?,
         ];
         let names = [
             ("particle_ids", system.particle_names().to_vec()),
             ("row_names", system.row_names().to_vec()),
-            ("rod_names", rods),
+            ("link_names", links),
         ];
         Ok(Recorder { target, frames: 0, arrays, names })
     }

@@ -92,7 +92,7 @@ fn check_energy(simulation: &Simulation, expect: &Expect, failures: &mut Vec<Str
 fn check_tension(simulation: &mut Simulation, expect: &Expect, failures: &mut Vec<String>) {
     let tension = simulation.tension();
     for expected in &expect.tension {
-        let found = simulation.system().rods().zip(&tension).find(|(rod, _)| rod.name == expected.rod);
+        let found = simulation.system().links().zip(&tension).find(|(link, _)| link.name == expected.rod);
         match found {
             Some((_, found)) if (found - expected.value).abs() <= expected.tolerance => {}
             Some((_, found)) => {

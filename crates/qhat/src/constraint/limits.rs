@@ -53,6 +53,12 @@ impl Limits {
     fn rows(&self) -> impl Iterator<Item = (f64, f64)> {
         [(-1.0, self.longest), (1.0, self.shortest)].into_iter().filter_map(|(sign, limit)| Some((sign, limit?)))
     }
+
+    /// Signed tension [N] of the multipliers of its rows, positive where it pulls its ends together.
+    pub(crate) fn tension(&self, lambda: &[f64]) -> f64 {
+        // The sum starts at +0 and adds: while slack it is 0 and not −0.
+        self.rows().zip(lambda).fold(0.0, |pull, ((sign, _), lambda)| pull - sign * lambda)
+    }
 }
 
 impl Holds for Limits {
@@ -106,8 +112,7 @@ impl Holds for Limits {
         let length = norm(d);
         if length > 0.0 {
             let n = scaled(1.0 / length, d);
-            let pull: f64 = self.rows().zip(lambda).map(|((sign, _), lambda)| -sign * lambda).sum();
-            let stiffness = pull / length;
+            let stiffness = self.tension(lambda) / length;
             visit(0, 1, Stiffness::Difference(plus(diagonal(stiffness), -stiffness, outer(1.0, n, n))));
         }
     }

@@ -15,6 +15,7 @@ mod expression;
 mod gears;
 mod lengths;
 mod limits;
+mod link;
 mod moment;
 mod nail;
 mod on_circle;
@@ -42,6 +43,7 @@ pub use expression::ExpressionConstraint;
 pub use gears::Gears;
 pub use lengths::Lengths;
 pub use limits::Limits;
+pub use link::Link;
 pub use nail::{Nail, NailForm};
 pub use on_circle::OnCircle;
 pub use on_curve::OnCurve;
@@ -262,7 +264,7 @@ macro_rules! constraints {
 }
 
 impl Constraint {
-    /// What faces draw and report as a rod.
+    /// A rod: large systems are made of them, and what asks for one alone need not go through every kind.
     pub(crate) fn as_rod(&self) -> Option<&Distance> {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }

@@ -7,7 +7,7 @@ mod particle;
 pub use builder::SystemBuilder;
 pub use particle::{Particle, ParticleId};
 
-use crate::constraint::{Constraint, Distance, Formulation, Holds, Layout, Rows, Softness};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, Rows, Softness};
 use crate::force::{Acts, Force};
 use crate::lanes::Plan;
 use crate::linalg::Component;
@@ -61,21 +61,6 @@ pub struct NamedConstraint {
     pub constraint: Constraint,
     /// Its first row in C, λ and J.
     pub first_row: usize,
-}
-
-/// A distance constraint, as faces draw and report it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rod<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// One end.
-    pub a: ParticleId,
-    /// The other end.
-    pub b: ParticleId,
-    /// r [m].
-    pub length: f64,
-    /// Its row in C, λ and J.
-    pub row: usize,
 }
 
 /// Particles, constraints and forces; see [`System::builder`].
@@ -163,12 +148,11 @@ impl System {
         &self.constraints
     }
 
-    /// The distance constraints, in the order they were added: `tension` has one number for each.
-    pub fn rods(&self) -> impl Iterator<Item = Rod<'_>> {
+    /// What acts along the line of two particles (rods, ropes, struts), in the order they were added: `tension` has one number for each.
+    pub fn links(&self) -> impl Iterator<Item = Link<'_>> {
         self.constraints.iter().filter_map(|named| {
-            let distance = named.constraint.as_rod()?;
-            let Distance { a, b, length, .. } = *distance;
-            Some(Rod { name: &named.name, a, b, length, row: named.first_row })
+            let rows = named.first_row..named.first_row + named.constraint.row_count(self.dimension());
+            Some(named.constraint.as_link()?.link(&named.name, rows))
         })
     }
 

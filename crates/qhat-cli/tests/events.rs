@@ -1,0 +1,67 @@
+//! `qhat run` on scenes where something happens: what it says about impacts, slipping and what broke.
+
+mod common;
+
+use common::{Folder, Ran};
+
+/// A pendulum let go level with its hook: its rod carries 3 m g sin of the angle fallen, and breaks at 2 m g.
+const BREAKS: &str = r#"
+schema = "qhat/1"
+name = "Breaks"
+dimension = 2
+step = { h = 0.01, duration = 0.6, tolerance = 1e-9 }
+forces = { gravity = [0.0, -10.0] }
+particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = [1.0, 0.0] }]
+constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
+"#;
+
+/// Falls 0.2 m, which takes 0.2 s, onto a ground from which nothing comes back.
+const LANDS: &str = r#"
+schema = "qhat/1"
+name = "Lands"
+dimension = 2
+step = { h = 0.01, duration = 0.5 }
+forces = { gravity = [0.0, -10.0] }
+particles = [{ id = "ball", at = [0.0, 0.2] }]
+constraints = [{ kind = "half-space", id = "ground" }]
+"#;
+
+fn json(ran: &Ran) -> serde_json::Value {
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+#[test]
+fn what_broke_is_told_with_its_name_and_its_time() {
+    let folder = Folder::with(&[("breaks.toml", BREAKS)]);
+    let summary = json(&folder.qhat(&["run", "breaks.toml", "--json"]).well());
+    let broke = summary["events"]["broke"].as_array().unwrap();
+    assert_eq!(broke.len(), 1, "{broke:?}");
+    assert_eq!(broke[0]["constraint"], "arm");
+    // ∫ dφ/√(2 g sin φ) from 0 to arcsin 2/3, by Simpson's rule in x = √φ.
+    let time = broke[0]["time"].as_f64().unwrap();
+    let (pieces, end) = (200, (2.0_f64 / 3.0).asin().sqrt());
+    let rate = |x: f64| if x == 0.0 { 2.0 / 20.0_f64.sqrt() } else { 2.0 * x / (20.0 * (x * x).sin()).sqrt() };
+    let sum: f64 = (0..=pieces)
+        .map(|k| match k {
+            0 => rate(0.0),
+            k if k == pieces => rate(end),
+            k => rate(end * k as f64 / pieces as f64) * if k % 2 == 1 { 4.0 } else { 2.0 },
+        })
+        .sum();
+    let expected = sum * end / (3 * pieces) as f64;
+    assert!((time - expected).abs() < 1e-8, "{time} s, expected {expected} s");
+    let said = folder.qhat(&["run", "breaks.toml"]).well().stdout;
+    assert!(said.contains(&format!("arm broke at t = {expected:.6} s")), "{said}");
+}
+
+#[test]
+fn impacts_are_counted_and_quiet_runs_say_nothing_of_events() {
+    let folder = Folder::with(&[("lands.toml", LANDS), ("flies.toml", &LANDS.replace("0.2]", "9.0]"))]);
+    let summary = json(&folder.qhat(&["run", "lands.toml", "--json"]).well());
+    assert_eq!(summary["events"]["impacts"], 1, "{}", summary["events"]);
+    assert_eq!(summary["events"]["broke"], serde_json::json!([]));
+    let said = folder.qhat(&["run", "lands.toml"]).well().stdout;
+    assert!(said.lines().any(|line| line.contains("events") && line.contains("1 impact")), "{said}");
+    let said = folder.qhat(&["run", "flies.toml"]).well().stdout;
+    assert!(!said.contains("events"), "{said}");
+}

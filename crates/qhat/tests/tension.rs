@@ -1,0 +1,83 @@
+//! Tension of ropes and struts: m g where a weight hangs or stands on one, nothing where it is slack.
+
+mod systems;
+
+use qhat::{
+    Dimension, Distance, Integrator, Limits, Nail, Particle, ParticleId, Settings, Simulation, System, SystemBuilder,
+};
+use systems::dense::assert_close;
+use systems::{G, gravity, settings};
+
+const MASS: f64 = 3.0;
+
+/// A weight at a place beside a held particle, on a rope or a strut, after a frame: what stands at a limit acts from the first step on.
+fn after_a_frame(at: [f64; 2], limits: impl Fn(ParticleId, ParticleId) -> Limits) -> Simulation {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", at).with_mass(MASS));
+    builder.constraint("link", limits(pivot, bob)).force(gravity());
+    start(builder)
+}
+
+fn start(builder: SystemBuilder) -> Simulation {
+    let (system, state) = builder.build().unwrap();
+    let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, 0.01) };
+    let mut simulation = Simulation::new(system, state, settings).unwrap();
+    simulation.step().unwrap();
+    simulation
+}
+
+#[test]
+fn a_weight_on_a_rope_pulls_it_with_m_g() {
+    let ropes = [
+        after_a_frame([0.0, -1.0], |a, b| Limits::rope(a, b, 1.0)),
+        after_a_frame([0.0, -1.0], |a, b| Limits::between(a, b, 0.5, 1.0)),
+    ];
+    for mut simulation in ropes {
+        let terms = simulation.terms();
+        assert_close("tension", terms.tension[0], MASS * G, 1e-12 * MASS * G);
+        assert_eq!(terms.multipliers[0], terms.tension[0], "λ of the longest");
+    }
+}
+
+#[test]
+fn a_slack_rope_has_none() {
+    let mut simulation = after_a_frame([0.0, -0.9], |a, b| Limits::rope(a, b, 1.0));
+    assert_eq!(simulation.tension()[0].to_bits(), 0.0_f64.to_bits(), "0 and not −0");
+}
+
+#[test]
+fn a_weight_on_a_strut_pushes_it_with_m_g() {
+    let struts = [
+        after_a_frame([0.0, 1.0], |a, b| Limits::strut(a, b, 1.0)),
+        after_a_frame([0.0, 1.0], |a, b| Limits::between(a, b, 1.0, 2.0)),
+    ];
+    for mut simulation in struts {
+        assert_close("tension", simulation.tension()[0], -MASS * G, 1e-12 * MASS * G);
+    }
+}
+
+/// One list: links and tensions go together, whatever stands between them.
+#[test]
+fn links_are_in_the_order_of_tension() {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]));
+    let hung =
+        [1.0, 2.0, 4.0].map(|mass| builder.particle(Particle::at(format!("{mass}"), [0.0, -mass]).with_mass(mass)));
+    builder.constraint("rope", Limits::between(pivot, hung[0], 0.5, 1.0));
+    builder.constraint("nail", Nail::new(pivot, [0.0; 3]));
+    builder.constraint("rod", Distance::new(pivot, hung[1], 2.0));
+    builder.constraint("strut", Limits::strut(hung[1], hung[2], 1.0)).force(gravity());
+    let mut simulation = start(builder);
+    let terms = simulation.terms();
+    let links: Vec<_> = simulation.system().links().collect();
+    assert_eq!(links.len(), terms.tension.len());
+    let seen: Vec<_> = links.iter().map(|link| (link.name, link.rows.clone(), link.is_rod())).collect();
+    assert_eq!(seen, [("rope", 0..2, false), ("rod", 4..5, true), ("strut", 5..6, false)]);
+    assert_eq!((links[0].shortest, links[0].longest), (Some(0.5), Some(1.0)));
+    assert_eq!((links[1].shortest, links[2].longest), (Some(2.0), None));
+    // The last particle is 2 m below the one before: nothing holds it.
+    for (tension, mass) in terms.tension.iter().zip([1.0, 2.0, 0.0]) {
+        assert_close("tension", *tension, mass * G, 1e-12 * G);
+    }
+}

@@ -1,0 +1,66 @@
+// The shapes of what leads particles: wires, endless lines, rings, angles.
+
+import type { Mark } from '../engine';
+import type { Vec3 } from './camera';
+import { traceRing } from './hold-shapes';
+import { ends, type Pen, project } from './pen';
+
+const ANGLE_RADIUS = 24;
+/** How far the direction from which an angle counts goes beyond the arc, px. */
+const REFERENCE = 10;
+
+/** What a bead runs along: a wire, an endless line or a ring. */
+export function traceGuide(pen: Pen, mark: Mark): void {
+  const { context, camera } = pen;
+  if (mark.kind === 'ring') traceRing(pen, mark);
+  else if (mark.kind === 'line') traceLine(pen, mark);
+  else {
+    for (let i = 0; 3 * i < mark.points.length; i += 1) {
+      const [x, y] = project(camera, mark.points, i);
+      if (i === 0) context.moveTo(x, y);
+      else context.lineTo(x, y);
+    }
+  }
+}
+
+/** Across the whole canvas, wherever the view is. */
+function traceLine(pen: Pen, mark: Mark): void {
+  const { context, camera } = pen;
+  let [ax, ay, bx, by] = ends(pen, mark);
+  if (mark.particles.length < 2) {
+    const [ox, oy] = project(camera, [0, 0, 0], 0);
+    // the last point is a direction: where the origin would go with it, less where it is
+    [bx, by] = [ax + bx - ox, ay + by - oy];
+  }
+  const length = Math.hypot(bx - ax, by - ay);
+  if (length < 1e-9) return;
+  const [ux, uy] = [(bx - ax) / length, (by - ay) / length];
+  const [mx, my] = camera.middle;
+  const nearest = (mx - ax) * ux + (my - ay) * uy;
+  const reach = camera.width + camera.height;
+  context.moveTo(ax + (nearest - reach) * ux, ay + (nearest - reach) * uy);
+  context.lineTo(ax + (nearest + reach) * ux, ay + (nearest + reach) * uy);
+}
+
+/** An arc at the corner from the first arm, or the direction, to the second, the shorter way. */
+export function traceAngle({ context, camera, screen }: Pen, { particles, points }: Mark): void {
+  const arm = (a: number, b: number) =>
+    Math.atan2(screen[3 * b + 1] - screen[3 * a + 1], screen[3 * b] - screen[3 * a]);
+  const [c, d] = particles.slice(-2);
+  const [x, y] = [screen[3 * c], screen[3 * c + 1]];
+  const along = (axis: Vec3) => axis.reduce((sum, part, k) => sum + part * (points[k] ?? 0), 0);
+  const from =
+    particles.length === 4
+      ? arm(particles[0], particles[1])
+      : Math.atan2(-along(camera.up), along(camera.right));
+  const turn = arm(c, d) - from;
+  const shorter = turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+  // the direction from which it counts is seen where no arm shows it
+  if (particles.length < 4 || particles[0] !== c) {
+    context.moveTo(x, y);
+    const far = ANGLE_RADIUS + REFERENCE;
+    context.lineTo(x + far * Math.cos(from), y + far * Math.sin(from));
+  }
+  context.moveTo(x + ANGLE_RADIUS * Math.cos(from), y + ANGLE_RADIUS * Math.sin(from));
+  context.arc(x, y, ANGLE_RADIUS, from, from + shorter, shorter < 0);
+}

@@ -1,0 +1,18 @@
+import { expect, it } from 'vitest';
+import { isRod, lengthsOf, nameOf } from '../../src/session/links';
+
+const link = (shortest: number | null, longest: number | null) => ({
+  name: 'l',
+  a: 0,
+  b: 1,
+  shortest,
+  longest,
+  rows: [0],
+});
+
+it('calls each link what it is, and says how long it may be', () => {
+  const cases = [link(2, 2), link(null, 2), link(2, null), link(1, 2)];
+  expect(cases.map(isRod)).toEqual([true, false, false, false]);
+  expect(cases.map(nameOf)).toEqual(['rod', 'rope', 'strut', 'strut']);
+  expect(cases.map(lengthsOf)).toEqual(['2 m', 'at most 2 m', 'at least 2 m', '1 m to 2 m']);
+});
