@@ -131,6 +131,12 @@ impl Simulation {
         self.inner.tension()
     }
 
+    /// Which links are broken, by their places.
+    pub fn broken(&self) -> Vec<u32> {
+        let broken = self.inner.system().broken_links(self.inner.state());
+        broken.into_iter().map(|place| place as u32).collect()
+    }
+
     /// The energy account.
     pub fn energy(&self) -> Energy {
         convert::energy(&self.inner.energy()).finish()

@@ -3,7 +3,8 @@
 mod systems;
 
 use qhat::{
-    Dimension, Distance, Integrator, Limits, Nail, Particle, ParticleId, Settings, Simulation, System, SystemBuilder,
+    Dimension, Distance, EventKind, Integrator, Limits, Nail, Particle, ParticleId, Settings, Simulation, System,
+    SystemBuilder,
 };
 use systems::dense::assert_close;
 use systems::{G, gravity, settings};
@@ -37,6 +38,48 @@ fn a_weight_on_a_rope_pulls_it_with_m_g() {
         let terms = simulation.terms();
         assert_close("tension", terms.tension[0], MASS * G, 1e-12 * MASS * G);
         assert_eq!(terms.multipliers[0], terms.tension[0], "λ of the longest");
+    }
+}
+
+/// Known before the first step, where nothing closes in.
+#[test]
+fn a_rope_that_starts_taut_pulls_from_the_start() {
+    let mut builder = System::builder(Dimension::Two);
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(MASS));
+    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    let (system, state) = builder.build().unwrap();
+    let mut simulation = Simulation::new(system, state, settings(Integrator::Dop853, 0.01)).unwrap();
+    assert_close("tension", simulation.tension()[0], MASS * G, 1e-12 * MASS * G);
+}
+
+/// A pendulum on a rope or a strut, let go level, carries 3 m g cos a, and breaks at twice its weight where a rod would.
+#[test]
+fn what_breaks_is_slack_from_then_on() {
+    let limits: [fn(ParticleId, ParticleId) -> Limits; 2] =
+        [|a, b| Limits::rope(a, b, 1.0), |a, b| Limits::between(a, b, 0.5, 1.0)];
+    for make in limits {
+        let mut builder = System::builder(Dimension::Two);
+        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+        let bob = builder.particle(Particle::at("bob", [1.0, 0.0]).with_mass(MASS));
+        builder.constraint("link", Limits { breaks_at: Some(2.0 * MASS * G), ..make(pivot, bob) }).force(gravity());
+        let mut simulation = start(builder);
+        let mut broke = None;
+        for _ in 0..100 {
+            let report = simulation.step().unwrap();
+            broke = broke.or(report.events.into_iter().find(|event| event.kind == EventKind::Broke));
+        }
+        let broke = broke.expect("it carries more than it can");
+        assert_eq!(simulation.system().broken_links(simulation.state()), [0]);
+        assert_eq!(simulation.tension(), [0.0]);
+        // From there, 2/3 m below the pivot at √(2 g 2/3), it flies.
+        let t = simulation.state().time() - broke.time;
+        let (sin, cos) = ((1.0_f64 - 4.0 / 9.0).sqrt(), 2.0 / 3.0);
+        let speed = (2.0 * G * cos).sqrt();
+        let (x, y) = (sin - speed * cos * t, -cos - speed * sin * t - 0.5 * G * t * t);
+        let q = &simulation.state().positions()[2..];
+        assert_close("x", q[0], x, 1e-8);
+        assert_close("y", q[1], y, 1e-8);
     }
 }
 

@@ -1,6 +1,6 @@
 // Links in words: what a person calls one, and how long it may be.
 
-import type { Link } from '../engine';
+import type { Link, Mark } from '../engine';
 import { format } from './numbers';
 
 /** It holds one length. */
@@ -18,4 +18,12 @@ export function lengthsOf({ shortest, longest }: Link): string {
   if (shortest === null) return `at most ${format(longest!)} m`;
   if (longest === null) return `at least ${format(shortest)} m`;
   return `${format(shortest)} m to ${format(longest)} m`;
+}
+
+/** The marks that are left when the links at these places are broken. */
+export function unbroken(marks: Mark[], links: readonly Link[], broken: ReadonlySet<number>): Mark[] {
+  if (broken.size === 0) return marks;
+  const gone = new Set([...broken].map((place) => `${links[place].a} ${links[place].b}`));
+  const isLink = ({ kind }: Mark) => kind === 'rope' || kind === 'strut';
+  return marks.filter((mark) => !isLink(mark) || !gone.has(mark.particles.join(' ')));
 }

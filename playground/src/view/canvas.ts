@@ -194,7 +194,7 @@ export class CanvasView {
     const { links } = picture.structure;
     const byStep: Link[][] = Array.from({ length: TENSION_STEPS }, () => []);
     for (let i = 0; i < links.length; i += 1) {
-      if (isStraight(links[i], picture.tension[i]))
+      if (isStraight(picture, i))
         byStep[tensionStep(picture.tension[i], picture.tensionLimit)].push(links[i]);
     }
     context.lineWidth = this.linkWidth(picture.structure);
@@ -216,7 +216,7 @@ export class CanvasView {
     const { links } = picture.structure;
     const [near, far] = this.depthRange();
     const depth = links.map(({ a, b }) => (screen[3 * a + 2] + screen[3 * b + 2]) / 2);
-    const order = links.map((_, i) => i).filter((i) => isStraight(links[i], picture.tension[i]));
+    const order = links.map((_, i) => i).filter((i) => isStraight(picture, i));
     order.sort((i, j) => depth[i] - depth[j]);
     const width = this.linkWidth(picture.structure);
     context.lineCap = 'round';
@@ -348,9 +348,9 @@ export class CanvasView {
   }
 }
 
-/** A rod always, a rope or a strut while it carries something: without, it is drawn as the mark that it is. */
-function isStraight(link: Link, tension: number): boolean {
-  return isRod(link) || Math.abs(tension) > 0;
+/** A rod until it breaks, a rope or a strut while it carries something: without, it is drawn as the mark that it is. */
+function isStraight({ structure, tension, broken }: Picture, place: number): boolean {
+  return isRod(structure.links[place]) ? !broken.has(place) : Math.abs(tension[place]) > 0;
 }
 
 function distanceToSegment(x: number, y: number, flat: Float64Array, a: number, b: number): number {

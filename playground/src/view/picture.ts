@@ -21,6 +21,8 @@ export interface Picture {
   down: number[];
   /** N, one per link */
   tension: Float64Array;
+  /** places of the links that are broken */
+  broken: Set<number>;
   /** N at the ends of the colour scale */
   tensionLimit: number;
   /** positions of the comparison run, or null */

@@ -1,6 +1,7 @@
 // The canvas, its camera and the drawing loop: asks the session for a frame, draws what it finds.
 
 import type { Mark } from '../engine';
+import { unbroken } from '../session/links';
 import { niceCeiling } from '../session/numbers';
 import { boxOfMotion } from '../session/scout';
 import type { Session } from '../session/session.svelte';
@@ -117,13 +118,15 @@ export class Stage {
       return;
     }
     const tension = this.readTension();
+    const broken = new Set(run.simulation.broken());
     this.followTension(tension);
     const picture: Picture = {
       structure,
       positions: this.smoothed(run.simulation),
-      marks: this.marksNow(run.simulation),
+      marks: unbroken(this.marksNow(run.simulation), structure.links, broken),
       down: this.session.down,
       tension,
+      broken,
       tensionLimit: this.tensionLimit,
       ghost: ghost ? this.smoothed(ghost.simulation) : null,
       ghostStopped: this.session.ghostStopped !== null,

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { isRod, lengthsOf, nameOf } from '../../src/session/links';
+import { isRod, lengthsOf, nameOf, unbroken } from '../../src/session/links';
 
 const link = (shortest: number | null, longest: number | null) => ({
   name: 'l',
@@ -15,4 +15,12 @@ it('calls each link what it is, and says how long it may be', () => {
   expect(cases.map(isRod)).toEqual([true, false, false, false]);
   expect(cases.map(nameOf)).toEqual(['rod', 'rope', 'strut', 'strut']);
   expect(cases.map(lengthsOf)).toEqual(['2 m', 'at most 2 m', 'at least 2 m', '1 m to 2 m']);
+});
+
+it('draws nothing of a broken rope', () => {
+  const mark = (kind: 'rope' | 'wheel', particles: number[]) => ({ kind, particles, points: [], size: 1, driven: false });
+  const marks = [mark('rope', [0, 1]), mark('wheel', [0, 1]), mark('rope', [1, 2])];
+  const links = [link(null, 2), { ...link(null, 2), a: 1, b: 2 }];
+  expect(unbroken(marks, links, new Set())).toBe(marks);
+  expect(unbroken(marks, links, new Set([0]))).toEqual([marks[1], marks[2]]);
 });

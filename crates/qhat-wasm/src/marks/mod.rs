@@ -65,19 +65,24 @@ pub(crate) fn marks(system: &System, state: &State, t: f64) -> Vec<Mark> {
         match force {
             Force::CubicSpring(spring) => marks.push(Mark::new("spring", [spring.a, spring.b])),
             Force::Actuator(actuator) => marks.push(Mark::new("actuator", [actuator.a, actuator.b])),
-            Force::Pressure(pressure) => match pressure.facet {
-                // The edges of an outline come one after the other.
-                Facet::Edge([a, b]) => match outlines.last_mut() {
-                    Some(outline) if outline.last() == Some(&a) => outline.push(b),
-                    _ => outlines.push(vec![a, b]),
-                },
-                Facet::Triangle(corners) => marks.push(Mark::new("area", corners)),
-            },
+            Force::Pressure(pressure) => add_facet(&pressure.facet, &mut outlines, &mut marks),
+            Force::Gas(gas) => gas.facets().iter().for_each(|facet| add_facet(facet, &mut outlines, &mut marks)),
             _ => (),
         }
     }
     marks.extend(outlines.into_iter().map(|outline| Mark::new("area", outline)));
     marks
+}
+
+/// The edges of an outline come one after the other.
+fn add_facet(facet: &Facet, outlines: &mut Vec<Vec<ParticleId>>, marks: &mut Vec<Mark>) {
+    match *facet {
+        Facet::Edge([a, b]) => match outlines.last_mut() {
+            Some(outline) if outline.last() == Some(&a) => outline.push(b),
+            _ => outlines.push(vec![a, b]),
+        },
+        Facet::Triangle(corners) => marks.push(Mark::new("area", corners)),
+    }
 }
 
 fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &mut Vec<Mark>) {

@@ -29,7 +29,7 @@ use crate::point::Motion;
 use crate::report::{Projection, StepReport};
 use crate::settings::{Feedback, Integrator, Settings};
 use crate::state::State;
-use crate::switching::deepest;
+use crate::switching::{close, deepest};
 use crate::system::{NamedConstraint, System, in_dimension};
 
 /// A constraint off by this many times its own size is beyond recognition: what follows would only be larger numbers.
@@ -188,7 +188,8 @@ pub fn check_start(system: &System, state: &State, settings: &Settings) -> Resul
     }
 }
 
-/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already.
+/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already. What is taut or
+/// lies on something is closed.
 ///
 /// # Errors
 /// [`StepError::NotSatisfied`] where no such positions are found; the state stays as it was.
@@ -200,7 +201,13 @@ pub fn project(
 ) -> Result<Projection, StepError> {
     settings.check()?;
     workspace.factored_at.clear();
-    in_dimension!(system.dimension, D => projection::project::<D>(system, state, settings, workspace))
+    in_dimension!(system.dimension, D => {
+        let projection = projection::project::<D>(system, state, settings, workspace)?;
+        if !system.switches.contacts.is_empty() {
+            close::<D>(system, state, settings, &mut workspace.equation);
+        }
+        Ok(projection)
+    })
 }
 
 /// What a fixed-step method says of the step it wrote to the workspace [J].

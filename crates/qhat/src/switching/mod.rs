@@ -29,7 +29,7 @@ use impact::{collide, hold, shock};
 pub(crate) use margins::{Normals, Trigger, first_violated, write_margins};
 pub(crate) use modes::{Mode, Modes};
 pub(crate) use reaction::{Moment, Pace, TOUCHES, still};
-pub(crate) use start::deepest;
+pub(crate) use start::{close, deepest};
 
 #[cfg(test)]
 mod tests;

@@ -38,7 +38,7 @@ impl Modes {
 
     /// Whether a contact is broken.
     pub(crate) fn is_gone(&self, contact: &Contact) -> bool {
-        contact.breakable.is_some_and(|breakable| self.broken[breakable])
+        contact.breakable.and_then(|breakable| self.broken.get(breakable)).is_some_and(|&broken| broken)
     }
 
     /// Says for each row whether it takes no part.

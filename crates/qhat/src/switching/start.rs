@@ -1,7 +1,9 @@
-//! Whether a start respects what acts on one side.
+//! Whether a start respects what acts on one side, and what of that acts.
 
-use super::{Mode, TOUCHES};
+use super::{Mode, Moment, Pace, TOUCHES};
+use crate::multiplier::Equation;
 use crate::point::Motion;
+use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
@@ -15,14 +17,21 @@ pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance:
     let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
     let contacts = system.switches.contacts.iter().enumerate();
-    let broken = |constraint: usize| {
-        let mut breakables = system.switches.breakables.iter().zip(&state.modes.broken);
-        breakables.any(|(breakable, &broken)| broken && breakable.constraint == constraint)
-    };
     let open = contacts.filter(|(k, contact)| {
-        state.modes.contacts.get(*k).is_none_or(|&mode| mode == Mode::Open) && !broken(contact.constraint)
+        state.modes.contacts.get(*k).is_none_or(|&mode| mode == Mode::Open) && !state.modes.is_gone(contact)
     });
     let depths = open.map(|(_, contact)| (contact, -rows.C[contact.normal]));
     let violated = depths.filter(|(contact, depth)| *depth > TOUCHES * tolerance * system.row_scale[contact.normal]);
     violated.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(contact, depth)| (contact.constraint, depth))
+}
+
+/// Closes what is taut or lies on something, so that forces are known before the first step. Where that would be an impact, or has no
+/// answer, it is left to the first step, which tells of it.
+pub(crate) fn close<const D: usize>(system: &System, state: &mut State, settings: &Settings, equation: &mut Equation) {
+    let pace = Pace { touches: TOUCHES * settings.constraint_tolerance, rest: Some(0.0), frame: settings.h };
+    let (mut modes, mut qd) = (state.modes.clone(), state.qd.clone());
+    let mut moment = Moment::<D> { equation, system, q: &state.q, qd: &mut qd, t: state.t, pace };
+    if moment.react(&mut modes, None).is_ok() && qd == state.qd {
+        state.modes = modes;
+    }
 }

@@ -14,6 +14,7 @@ use crate::linalg::Component;
 use crate::multiplier::{MatrixPlan, MatrixStructure};
 use crate::point::Motion;
 use crate::settings::Feedback;
+use crate::state::State;
 use crate::switching::Switches;
 
 /// Number of space dimensions.
@@ -154,6 +155,15 @@ impl System {
             let rows = named.first_row..named.first_row + named.constraint.row_count(self.dimension());
             Some(named.constraint.as_link()?.link(&named.name, rows))
         })
+    }
+
+    /// Which links are broken, by their places among [`System::links`].
+    pub fn broken_links(&self, state: &State) -> Vec<usize> {
+        let breakables = self.switches.breakables.iter().zip(&state.modes.broken);
+        let broken: Vec<usize> =
+            breakables.filter(|&(_, &broken)| broken).map(|(breakable, _)| breakable.rows.start).collect();
+        let links = self.links().enumerate();
+        links.filter(|(_, link)| broken.contains(&link.rows.start)).map(|(place, _)| place).collect()
     }
 
     /// The parts of A = J W Jᵀ that are coupled with no other: how each hangs together, how it is factored and what that costs.

@@ -96,7 +96,8 @@ impl<const D: usize> Switching<'_, D> {
         }
         let (equation, qd) = (&mut workspace.equation, &workspace.qd);
         equation.constrain(system, Motion::<D> { q: &middle[..coordinates], qd, t: t + 0.5 * h });
-        let open = system.switches.contacts.iter().zip(&self.modes.contacts).filter(|(_, mode)| !mode.is_closed());
+        let contacts = system.switches.contacts.iter().zip(&self.modes.contacts);
+        let open = contacts.filter(|&(contact, &mode)| mode == Mode::Open && !self.modes.is_gone(contact));
         let mut rows = open.map(|(contact, _)| contact.normal);
         let is_missed = rows.any(|row| equation.gaps.C[row] < -settings.constraint_tolerance * system.row_scale[row]);
         equation.constrain(system, Motion::<D> { q: &workspace.q, qd, t: t + h });
