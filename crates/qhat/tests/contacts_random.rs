@@ -95,7 +95,7 @@ fn total(report: &qhat::StepReport) -> f64 {
 #[test]
 fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
     // Sixty of any kind, and those that once gained energy at an edge, slipped to and fro for ever, or had no answer to friction.
-    for seed in (0..60).chain([212, 281, 460, 492, 610, 612, 682, 932, 1165]) {
+    for seed in (0..60).chain([87, 212, 281, 460, 492, 607, 610, 612, 682, 932, 1006, 1165, 1270, 1280, 2158]) {
         let (system, mut state) = heap(&mut Random::new(seed)).build().unwrap();
         let d = system.dimension();
         let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, FRAME) };

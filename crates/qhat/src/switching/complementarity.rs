@@ -72,21 +72,22 @@ fn turn<const D: usize>(
     let mut seen: Vec<Vec<Mode>> = Vec::new();
     let mut is_careful = false;
     let (mut last, mut aligned) = (0, 0);
+    // Modes that contradict nothing, but for directions that are not quite right.
+    let mut fits: Option<Vec<Mode>> = None;
     for _ in 0..PASSES * (touching.len() + 4) {
-        equation.set_modes(system, modes);
-        equation.factor::<D>(system, 0.0);
-        equation.solve_multipliers::<D>(system, Multipliers::Force);
+        solve::<D>(equation, system, modes);
         if equation.lambda.iter().any(|force| force.is_nan()) {
             break;
         }
-        equation.write_push::<D>(system);
         let changes = contradictions::<D>(equation, system, modes, touching);
         let Some(&(first, mode)) = changes.first() else {
-            if aligned < ALIGNMENTS && align::<D>(equation, system, modes, touching) {
-                aligned += 1;
-                continue;
+            let contacts = modes.contacts.clone();
+            if aligned == ALIGNMENTS || !align::<D>(equation, system, modes, touching) {
+                return Ok(());
             }
-            return Ok(());
+            aligned += 1;
+            fits = Some(contacts);
+            continue;
         };
         last = first;
         is_careful |= seen.contains(&modes.contacts);
@@ -97,7 +98,16 @@ fn turn<const D: usize>(
             changes.into_iter().for_each(|(contact, mode)| modes.contacts[contact] = mode);
         }
     }
-    Err(Jam { contact: last })
+    modes.contacts = fits.ok_or(Jam { contact: last })?;
+    solve::<D>(equation, system, modes);
+    Ok(())
+}
+
+fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
+    equation.set_modes(system, modes);
+    equation.factor::<D>(system, 0.0);
+    equation.solve_multipliers::<D>(system, Multipliers::Force);
+    equation.write_push::<D>(system);
 }
 
 /// What of w is roundoff.

@@ -198,7 +198,7 @@ impl<const D: usize> Moment<'_, D> {
                 modes.contacts[place] = Mode::Open;
                 continue;
             }
-            let touching = self.touching(place, false, trigger == Some(Trigger::Friction(place)));
+            let touching = self.touching(place, false, D == 3 && trigger == Some(Trigger::Friction(place)));
             let mode = &mut modes.contacts[place];
             match (*mode, touching.slip) {
                 // What slips slowly keeps its direction, however roundoff turns the slip (`multiplier/friction.rs`).
