@@ -107,6 +107,11 @@ export class Simulation {
     return attempt(() => this.inner.tension());
   }
 
+  /** places of the links that are broken */
+  broken(): Uint32Array {
+    return this.inner.broken();
+  }
+
   energy(): Energy {
     return attempt(() => this.inner.energy());
   }
