@@ -166,7 +166,8 @@ impl<const D: usize> RowWriter<'_, D> {
     /// One row that does not depend on time: C, Ċ, γ and its blocks of J, one for each particle that the constraint names.
     #[inline(always)]
     pub(crate) fn write<const K: usize>(&mut self, C: f64, Cd: f64, gamma: f64, blocks: [Point<D>; K]) {
-        self.write_driven(C, Cd, gamma, 0.0, blocks);
+        // C_t is zero from the beginning.
+        self.put(C, Cd, gamma, blocks);
     }
 
     /// One row whose blocks come one at a time: `fill` is told which particles they belong to and where to put them, and returns
@@ -198,10 +199,15 @@ impl<const D: usize> RowWriter<'_, D> {
         Ct: f64,
         blocks: impl IntoIterator<Item = Point<D>>,
     ) {
+        self.rows.Ct[self.row] = Ct;
+        self.put(C, Cd, gamma, blocks);
+    }
+
+    #[inline(always)]
+    fn put(&mut self, C: f64, Cd: f64, gamma: f64, blocks: impl IntoIterator<Item = Point<D>>) {
         self.rows.C[self.row] = C;
         self.rows.Cd[self.row] = Cd;
         self.rows.gamma[self.row] = gamma;
-        self.rows.Ct[self.row] = Ct;
         for numbers in blocks {
             self.rows.J.blocks[self.entry * D..][..D].copy_from_slice(&numbers);
             self.entry += 1;
