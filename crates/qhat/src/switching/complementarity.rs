@@ -103,7 +103,8 @@ fn turn<const D: usize>(
     Ok(())
 }
 
-fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
+/// λ, F and the push of both, for modes and the right side at hand.
+pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
     equation.factor::<D>(system, 0.0);
     equation.solve_multipliers::<D>(system, Multipliers::Force);

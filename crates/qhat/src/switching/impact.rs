@@ -10,8 +10,9 @@
 //! so A Λ = b with b = −(1 + e) Ċ⁻ where a contact closes in and −Ċ elsewhere: the problem of `complementarity.rs`.
 //!
 //! Newton's law can gain energy where several contacts meet, or one with friction (Kane's pendulum), and what is wedged cannot bounce off
-//! both sides. Such an impact is taken without giving back, e = 0, which never gains and always has an answer.
+//! both sides. Such an impact is taken without giving back, e = 0, which never gains.
 
+use super::complementarity::solve;
 use super::cones::propose;
 use super::{Jam, Modes, Touching, settle};
 use crate::multiplier::{Equation, Multipliers};
@@ -36,9 +37,7 @@ pub(crate) fn collide<const D: usize>(
     let mut is_bouncing = true;
     loop {
         modes.clone_from(&start);
-        for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
-            *b = -rate;
-        }
+        ask_to_stop(equation);
         let mut bounces = false;
         for (&Touching { contact, .. }, &gives_back) in touching.iter().zip(gives_back) {
             let contact = &system.switches.contacts[contact];
@@ -65,9 +64,7 @@ pub(crate) fn collide<const D: usize>(
 /// Takes out of q̇ what moves the rows that are on, with the factor and rows at hand. Returns the energy lost [J].
 pub(crate) fn hold<const D: usize>(equation: &mut Equation, system: &System, qd: &mut [f64]) -> f64 {
     let before = kinetic::<D>(system, qd);
-    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
-        *b = -rate;
-    }
+    ask_to_stop(equation);
     let Equation { solver, b, lambda, .. } = &mut *equation;
     solver.solve(&system.matrix, &b.sum, Multipliers::Force, lambda);
     equation.write_impulse::<D>(system);
@@ -98,13 +95,8 @@ pub(crate) fn shock<const D: usize>(
         *b = tau * *b - rate;
     }
     let during = propose::<D>(equation, system, modes, touching).ok_or(jam)?;
-    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
-        *b = -rate;
-    }
-    equation.set_modes(system, &during);
-    equation.factor::<D>(system, 0.0);
-    equation.solve_multipliers::<D>(system, Multipliers::Force);
-    equation.write_push::<D>(system);
+    ask_to_stop(equation);
+    solve::<D>(equation, system, &during);
     let after: Vec<f64> = qd.iter().zip(&equation.push).map(|(v, push)| v + push).collect();
     let lost = before - kinetic::<D>(system, &after);
     // Neither an impulse that takes something nor other modes: nothing that could go on.
@@ -115,6 +107,13 @@ pub(crate) fn shock<const D: usize>(
     *modes = during;
     qd.copy_from_slice(&after);
     Ok(lost)
+}
+
+/// b ← −Ċ.
+fn ask_to_stop(equation: &mut Equation) {
+    for (b, rate) in equation.b.sum.iter_mut().zip(&equation.rows.Cd) {
+        *b = -rate;
+    }
 }
 
 /// T of what can move [J].

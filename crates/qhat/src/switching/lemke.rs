@@ -111,18 +111,8 @@ fn snapped(right: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::Random;
     use super::lemke;
-
-    /// SplitMix64 (Steele, Lea, Flood 2014), in [−1, 1).
-    fn numbers(count: usize, seed: u64) -> Vec<f64> {
-        let number = |k: u64| {
-            let z = (seed + k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-            let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
-        (0..count as u64).map(number).collect()
-    }
 
     /// Bᵀ B of rank r: every such problem has an answer where q = Bᵀ y + s, s ≥ 0.
     #[test]
@@ -130,9 +120,9 @@ mod tests {
         for seed in 0..500 {
             let n = 1 + seed as usize % 12;
             let r = n - seed as usize % 3 % n;
-            let B = numbers(r * n, 1000 * seed);
-            let y = numbers(r, 1000 * seed + 500);
-            let s = numbers(n, 1000 * seed + 700);
+            let mut random = Random(seed);
+            let mut numbers = |count: usize| -> Vec<f64> { (0..count).map(|_| random.number()).collect() };
+            let (B, y, s) = (numbers(r * n), numbers(r), numbers(n));
             let column = |i: usize| (0..r).map(move |k| k * n + i);
             let M: Vec<f64> =
                 (0..n * n).map(|e| column(e / n).zip(column(e % n)).map(|(a, b)| B[a] * B[b]).sum()).collect();

@@ -59,8 +59,8 @@ pub(crate) fn first_violated(margins: &[f64]) -> usize {
     (1..margins.len()).fold(0, |most, k| if margins[k] < margins[most] { k } else { most })
 }
 
-/// The cosine to which a normal may turn in a substep, and what counts as one of it: no method that follows a smooth surface gets
-/// there.
+/// The cosine to which a normal may turn in a substep, 60°, and what counts as one of it. What turns so far without an edge only ends a
+/// substep there.
 const TURNED: f64 = 0.5;
 const FAR: f64 = 0.1;
 

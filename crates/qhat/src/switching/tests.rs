@@ -7,10 +7,10 @@ use crate::point::Motion;
 use crate::{Barrier, Dimension, Limits, Particle, ParticleId, State, Surface, System};
 
 /// SplitMix64 (Steele, Lea, Flood 2014), in [−1, 1).
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    fn number(&mut self) -> f64 {
+    pub(super) fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
