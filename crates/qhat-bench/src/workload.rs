@@ -127,7 +127,7 @@ impl Workload {
             .map(|i| {
                 let position = &self.positions[i * self.dimension..][..self.dimension];
                 let particle = Particle::at(format!("p{i}"), position).with_mass(self.masses[i]);
-                builder.particle(if self.fixed[i] == 1 { particle.held() } else { particle })
+                builder.particle(if self.fixed[i] == 1 { particle.fixed() } else { particle })
             })
             .collect();
         for (row, (a, b, length)) in self.rods().enumerate() {

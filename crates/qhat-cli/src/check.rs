@@ -9,7 +9,7 @@ use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
-use qhat::{Component, Integrator, Method, Settings, Simulation, Solver, Terms, evaluate};
+use qhat::{Component, FactorMethod, Integrator, Settings, Simulation, Solver, Terms, evaluate};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -135,7 +135,7 @@ impl Components {
         let how_many = if self.count == 1 { String::new() } else { format!("{} times ", self.count) };
         let hubs = if self.hubs == 0 { String::new() } else { format!(" with {}", count(self.hubs, "hub")) };
         let mut words = format!("{how_many}{}{hubs}, {}: {}", self.kind, count(self.rows, "row"), self.method);
-        if self.method != Method::Dense.name() {
+        if self.method != FactorMethod::Dense.name() {
             words += &format!(", {} entries of L, {} operations to factor", self.entries_of_l, self.factor_flops);
         }
         words

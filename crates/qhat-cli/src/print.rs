@@ -69,7 +69,7 @@ pub(crate) fn table(title: &str, lines: &[(&str, String)]) -> Result<(), Failure
 pub(crate) fn path(solver: Solver) -> &'static str {
     match solver {
         Solver::Rows => "by the rows of A",
-        Solver::Lanes => "in lanes",
+        Solver::Chains => "in lanes",
         Solver::EndOfStep => "at the end of each step",
     }
 }

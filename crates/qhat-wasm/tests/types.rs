@@ -46,7 +46,7 @@ fn every_kind_of_mark_is_named() {
 
 #[test]
 fn every_solver_is_named() {
-    for solver in [qhat::Solver::Rows, qhat::Solver::Lanes, qhat::Solver::EndOfStep] {
+    for solver in [qhat::Solver::Rows, qhat::Solver::Chains, qhat::Solver::EndOfStep] {
         assert!(TYPES.contains(&format!("'{solver}'")), "{solver}");
     }
 }

@@ -16,7 +16,7 @@
 
 use crate::number::cross;
 use crate::point::{dot, minus, norm, scaled};
-use crate::system::Dimension;
+use crate::space::Dimension;
 
 /// What spans less than this of what unit vectors can is taken as flat: rods would hold it by 1e6 times the force on it.
 const FLAT: f64 = 1e-6;

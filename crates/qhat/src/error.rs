@@ -1,5 +1,7 @@
 //! Typed errors. Each reads as a sentence with the names a user gave.
 
+pub use crate::settings::SettingsError;
+
 use crate::settings::Integrator;
 use thiserror::Error;
 
@@ -77,35 +79,6 @@ pub enum BodyError {
     NoExtent,
 }
 
-/// Why a setting was refused.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum SettingsError {
-    /// A number outside its range.
-    #[error("{name} must be {range}, but is {value}")]
-    OutOfRange {
-        /// The setting.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-        /// What is allowed.
-        range: &'static str,
-    },
-    /// An integrator that does not exist.
-    #[error("there is no integrator `{name}`; use one of {}", Integrator::ALL.map(Integrator::name).join(", "))]
-    UnknownIntegrator {
-        /// What was given.
-        name: String,
-    },
-    /// A frame that steps of h do not fill.
-    #[error("a frame of {frame} s is no multiple of the step h = {h} s")]
-    FrameNotMultiple {
-        /// Length of the frame [s].
-        frame: f64,
-        /// The step [s].
-        h: f64,
-    },
-}
-
 /// Why a step was not taken. The state is the last good one.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
@@ -151,7 +124,7 @@ pub enum StepError {
     NoEvents {
         /// Which was chosen.
         integrator: Integrator,
-        /// The first constraint that switches.
+        /// The first constraint that contacts.
         constraint: String,
     },
     /// A start beyond what a contact or limit allows: nothing says on which side it belongs, so it is not moved.

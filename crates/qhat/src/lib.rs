@@ -15,7 +15,7 @@
 //! use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
 //!
 //! let mut builder = System::builder(Dimension::Two);
-//! let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+//! let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
 //! let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
 //! builder.constraint("rod", Distance::new(pivot, bob, 1.0));
 //! builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
@@ -39,24 +39,29 @@ pub mod expression;
 pub mod force;
 pub mod linalg;
 
+mod allowed;
 mod body;
+mod chains;
 mod cluster;
+mod contact;
+mod drift;
+mod driven;
+mod energy;
 mod ensemble;
 mod error;
 mod integrate;
-mod lanes;
-mod measure;
+mod modes;
 mod multiplier;
 mod number;
 mod point;
 mod report;
-mod schedule;
 mod settings;
 mod simulation;
 mod softness;
+mod space;
 mod state;
 mod stiffness;
-mod switching;
+mod structure;
 mod system;
 mod terms;
 mod threads;
@@ -64,10 +69,12 @@ mod threads;
 pub use body::Body;
 pub use cluster::rigid_rods;
 pub use constraint::{
-    Anchor, Angle, Area, Barrier, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint,
-    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, OnCircle, OnCurve,
-    OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
+    Anchor, Angle, Area, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint, ExpressionConstraint,
+    Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint, Obstacle, OnCircle,
+    OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
 };
+pub use driven::Driven;
+pub use energy::Energy;
 pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
@@ -76,13 +83,12 @@ pub use force::{
     Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
 };
 pub use integrate::{Workspace, check_start, project, step};
-pub use linalg::{Component, Kind, Method, SymmetricMatrix};
-pub use measure::Energy;
+pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
 pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
-pub use schedule::Schedule;
 pub use settings::{Feedback, Integrator, Settings};
 pub use simulation::Simulation;
 pub use softness::SoftRow;
+pub use space::{Dimension, ParticleId};
 pub use state::{State, Work};
-pub use system::{Dimension, NamedConstraint, Particle, ParticleId, System, SystemBuilder};
+pub use system::{Particle, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

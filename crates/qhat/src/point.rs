@@ -1,6 +1,6 @@
 //! Points and vectors of D components, and the motion they are read from.
 
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A point or vector in D dimensions.
 pub(crate) type Point<const D: usize> = [f64; D];

@@ -1,6 +1,6 @@
 //! What a step tells.
 
-use crate::measure::Energy;
+use crate::energy::Energy;
 use crate::settings::Integrator;
 use std::fmt;
 
@@ -110,7 +110,7 @@ pub enum Solver {
     #[default]
     Rows,
     /// Open chains in eight lanes.
-    Lanes,
+    Chains,
     /// Newton's method at the end of the step, with geometric stiffness.
     EndOfStep,
 }
@@ -119,7 +119,7 @@ impl fmt::Display for Solver {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Solver::Rows => "rows",
-            Solver::Lanes => "lanes",
+            Solver::Chains => "lanes",
             Solver::EndOfStep => "end of step",
         })
     }

@@ -1,8 +1,8 @@
 //! Every number a user may tune, with unit, default and valid range.
 
-use crate::error::SettingsError;
 use std::fmt;
 use std::str::FromStr;
+use thiserror::Error;
 
 /// How a state is carried over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -189,6 +189,36 @@ impl Settings {
     }
 }
 
+/// `Ok` if a setting is finite and within its range; otherwise an error that names the setting and the range.
 fn in_range(name: &'static str, value: f64, allowed: bool, range: &'static str) -> Result<(), SettingsError> {
     if value.is_finite() && allowed { Ok(()) } else { Err(SettingsError::OutOfRange { name, value, range }) }
+}
+
+/// Why a setting was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SettingsError {
+    /// A number outside its range.
+    #[error("{name} must be {range}, but is {value}")]
+    OutOfRange {
+        /// The setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// An integrator that does not exist.
+    #[error("there is no integrator `{name}`; use one of {}", Integrator::ALL.map(Integrator::name).join(", "))]
+    UnknownIntegrator {
+        /// What was given.
+        name: String,
+    },
+    /// A frame that steps of h do not fill.
+    #[error("a frame of {frame} s is no multiple of the step h = {h} s")]
+    FrameNotMultiple {
+        /// Length of the frame [s].
+        frame: f64,
+        /// The step [s].
+        h: f64,
+    },
 }

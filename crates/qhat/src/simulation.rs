@@ -1,15 +1,16 @@
 //! Simulation: the easy door. Owns a system, its state, the settings and the workspace.
 
 use crate::constraint::Formulation;
+use crate::energy::{self, Energy};
 use crate::error::{SettingsError, StepError};
 use crate::force::{Acts, Drag, Force, Gravity, MouseSpring};
 use crate::integrate::{Workspace, check_start, check_switches, project, step, step_for};
-use crate::measure::{self, Energy};
 use crate::point::Motion;
 use crate::report::{Projection, StepReport};
 use crate::settings::{Feedback, Settings};
+use crate::space::{ParticleId, in_dimension};
 use crate::state::State;
-use crate::system::{ParticleId, System, in_dimension};
+use crate::system::System;
 use crate::terms::Terms;
 
 /// The share of the energy scale below which a kinetic energy does not count as motion: energy errors are relative to the
@@ -64,7 +65,7 @@ impl Simulation {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
         check_start(&self.system, &self.state, &self.settings)?;
-        self.energy_floor = ENERGY_FLOOR * measure::energy_scale(&self.system, &self.state);
+        self.energy_floor = ENERGY_FLOOR * energy::energy_scale(&self.system, &self.state);
         let energy = self.energy();
         self.balance = energy.balance();
         self.largest_kinetic = energy.kinetic;
@@ -149,7 +150,7 @@ impl Simulation {
 
     /// The energy account at the present state.
     pub fn energy(&self) -> Energy {
-        measure::energy(&self.system, &self.state)
+        energy::energy(&self.system, &self.state)
     }
 
     /// What is missing in the energy account at the present state [J]; negative where energy was lost.
@@ -252,7 +253,7 @@ impl Simulation {
         let mut state = State { carry: None, ..self.state.clone() };
         if self.settings.integrator.projects() {
             project(&system, &mut state, &self.settings, &mut workspace)?;
-            let change = measure::energy(&system, &state).total() - self.energy().total();
+            let change = energy::energy(&system, &state).total() - self.energy().total();
             state.work.stabilization += change;
         }
         (self.system, self.state, self.workspace) = (system, state, workspace);
@@ -329,7 +330,7 @@ impl Simulation {
     fn change_forces(&mut self, change: impl FnOnce(&mut Vec<Force>)) {
         let potential = |system: &System, state: &State| {
             in_dimension!(system.dimension, D => {
-                measure::potential(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t })
+                energy::potential(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t })
             })
         };
         let before = potential(&self.system, &self.state);

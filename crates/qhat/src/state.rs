@@ -1,6 +1,6 @@
 //! State: where everything is, and all that a restart needs to go on with the same bits.
 
-use crate::switching::{Mode, Modes};
+use crate::modes::{Mode, Modes};
 
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,9 @@ use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::Warning;
 use crate::settings::Feedback;
+use crate::space::in_dimension;
 use crate::state::State;
-use crate::system::{System, in_dimension};
+use crate::system::System;
 
 /// Every symbol of one evaluation. n particles in d dimensions, N = d·n, m rows, SI units; [`NOTATION`] lists them.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,7 +152,7 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
     let warnings = equation.warnings(system);
     let constraint_matrix =
         in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&equation.rows.J, &system.inverse_mass));
-    let is_open = (0..system.row_count()).map(|row| equation.is_off(row)).collect();
+    let is_open = (0..system.row_count()).map(|row| equation.is_inactive(row)).collect();
     Terms {
         time: state.t,
         positions: state.q.clone(),

@@ -3,7 +3,7 @@
 mod systems;
 
 use qhat::{
-    Barrier, Dimension, Distance, Integrator, Limits, Particle, Settings, State, Surface, System, SystemBuilder,
+    Dimension, Distance, Integrator, Limits, Obstacle, Particle, Settings, State, Surface, System, SystemBuilder,
     Workspace, step,
 };
 use systems::random::Random;
@@ -56,7 +56,7 @@ fn heap(random: &mut Random) -> SystemBuilder {
     }
     for (i, &id) in ids.iter().enumerate() {
         for (k, surface) in surfaces().into_iter().enumerate() {
-            let barrier = Barrier { restitution, friction, ..Barrier::new(id, surface) };
+            let barrier = Obstacle { restitution, friction, ..Obstacle::new(id, surface) };
             builder.constraint(format!("surface{k}({i})"), barrier);
         }
     }

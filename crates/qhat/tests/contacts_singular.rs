@@ -2,7 +2,7 @@
 
 mod systems;
 
-use qhat::{Barrier, Dimension, Distance, Integrator, Particle, Settings, Simulation, Surface, System, SystemBuilder};
+use qhat::{Dimension, Distance, Integrator, Obstacle, Particle, Settings, Simulation, Surface, System, SystemBuilder};
 use systems::{G, gravity, settings};
 
 const FRAME: f64 = 1.0 / 60.0;
@@ -39,7 +39,7 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
             let ground = Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 };
             builder
                 .constraint("rod", Distance::new(a, b, 1.0))
-                .constraint("ground", Barrier { friction, ..Barrier::new(a, ground) })
+                .constraint("ground", Obstacle { friction, ..Obstacle::new(a, ground) })
                 .force(gravity());
             let mut simulation = start(builder);
             simulation.step().unwrap();
@@ -75,7 +75,7 @@ fn what_slides_over_an_edge_falls_from_there() {
             let particle = Particle::at("puck", [1.0 - radius - way, 0.5, 0.1][..d].to_vec()).with_velocity(velocity);
             let puck = builder.particle(particle);
             let block = Surface::Box { centre: [0.0; 3], half: [1.0, 0.5, 1.0] };
-            builder.constraint("box", Barrier { friction, ..Barrier::new(puck, block) }).force(gravity());
+            builder.constraint("box", Obstacle { friction, ..Obstacle::new(puck, block) }).force(gravity());
             let mut simulation = start(builder);
             for _ in 0..30 {
                 simulation.step().unwrap();

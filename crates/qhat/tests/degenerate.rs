@@ -58,8 +58,8 @@ fn no_constraints() {
 #[test]
 fn both_ends_fixed() {
     let mut builder = plane();
-    let a = builder.particle(Particle::at("a", [0.0, 0.0]).held());
-    let b = builder.particle(Particle::at("b", [1.0, 0.0]).held());
+    let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
+    let b = builder.particle(Particle::at("b", [1.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.0, -1.0]));
     builder.constraint("inert", Distance::new(a, b, 1.0)).constraint("rod", Distance::new(a, bob, 1.0));
     builder.constraint("nail", Nail::new(b, [1.0, 0.0, 0.0])).force(systems::gravity());
@@ -77,8 +77,8 @@ fn both_ends_fixed() {
 #[test]
 fn both_ends_fixed_at_the_wrong_distance() {
     let mut builder = plane();
-    let a = builder.particle(Particle::at("a", [0.0, 0.0]).held());
-    let b = builder.particle(Particle::at("b", [1.5, 0.0]).held());
+    let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
+    let b = builder.particle(Particle::at("b", [1.5, 0.0]).fixed());
     builder.constraint("wrong", Distance::new(a, b, 1.0));
     let (system, state) = builder.build().unwrap();
     assert_eq!(evaluate(&system, &state).residual, [0.5]);
@@ -118,7 +118,7 @@ fn infeasible_rows_are_named() {
 fn redundant_rows_share_the_load() {
     let (single, start) = systems::pendulum(0.5);
     let mut builder = plane();
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", &start.positions()[2..]).with_mass(2.0));
     for name in ["one", "two", "three"] {
         builder.constraint(name, Distance::new(pivot, bob, 1.0));
@@ -210,7 +210,7 @@ fn scalar_nail_without_diagonal_drag() {
 fn masses_a_billion_apart() {
     for (links, ratio) in [(2, 1e9), (20, 1e7), (20, 1e8), (20, 1e9), (100, 1e9)] {
         let mut builder = plane();
-        let mut last = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+        let mut last = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
         for i in 1..=links {
             let mass = if i == links { 1e-2 * ratio } else { 1e-2 };
             let next = builder.particle(Particle::at(format!("p{i}"), [0.0, -0.01 * i as f64]).with_mass(mass));
@@ -244,8 +244,8 @@ fn a_heavy_load_can_be_carried() {
 #[test]
 fn parallelogram_passes_through_flat() {
     let mut builder = plane();
-    let a = builder.particle(Particle::at("a", [0.0, 0.0]).held());
-    let b = builder.particle(Particle::at("b", [2.0, 0.0]).held());
+    let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
+    let b = builder.particle(Particle::at("b", [2.0, 0.0]).fixed());
     let c = builder.particle(Particle::at("c", [0.0, 1.0]).with_velocity([5.0, 0.0]));
     let d = builder.particle(Particle::at("d", [2.0, 1.0]).with_velocity([5.0, 0.0]));
     builder.constraint("ac", Distance::new(a, c, 1.0)).constraint("bd", Distance::new(b, d, 1.0));

@@ -151,7 +151,7 @@ fn rows_stand_in_the_order_of_the_constraints() {
 fn state_vector_is_particle_after_particle() {
     let mut builder = System::builder(qhat::Dimension::Two);
     builder.particle(Particle::at("a", [1.0, 2.0]).with_velocity([5.0, 6.0]).with_mass(4.0));
-    builder.particle(Particle::at("b", [3.0, 4.0]).held());
+    builder.particle(Particle::at("b", [3.0, 4.0]).fixed());
     let (system, state) = builder.build().unwrap();
     assert_eq!(state.positions(), [1.0, 2.0, 3.0, 4.0]);
     assert_eq!(state.velocities(), [5.0, 6.0, 0.0, 0.0]);

@@ -86,7 +86,7 @@ fn hubs(d: usize, redundant: bool) -> (System, State) {
     let (left, right) = (vec![-1.0; d], vec![2.0; d]);
     let a = builder.particle(Particle::at("a", left.clone()).with_mass(0.3));
     let b = builder.particle(Particle::at("b", right.clone()).with_mass(5.0));
-    let ground = builder.particle(Particle::at("ground", vec![0.0; d]).held());
+    let ground = builder.particle(Particle::at("ground", vec![0.0; d]).fixed());
     builder.constraint("a b", Distance::new(a, b, apart(&left, &right)));
     builder.constraint("a ground", Distance::new(a, ground, norm(&left)));
     for i in 0..56 {
@@ -220,7 +220,7 @@ fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, St
         let (x, v) = (&state.positions()[i * d..][..d], &state.velocities()[i * d..][..d]);
         let particle = Particle::at(system.particle_names()[i].clone(), x).with_mass(system.masses()[i]);
         let fixed = system.inverse_masses()[i] == 0.0;
-        builder.particle(if fixed { particle.held() } else { particle.with_velocity(v) });
+        builder.particle(if fixed { particle.fixed() } else { particle.with_velocity(v) });
     }
     for named in &numbering.constraints {
         let constraint: Constraint = match named.constraint.clone() {
@@ -308,7 +308,7 @@ fn sparse_equals_dense() {
     for copy in 0..3 {
         for (i, x) in state.positions().chunks(2).enumerate() {
             let particle = Particle::at(format!("{i} of {copy}"), x).with_mass(system.masses()[i]);
-            builder.particle(if system.inverse_masses()[i] == 0.0 { particle.held() } else { particle });
+            builder.particle(if system.inverse_masses()[i] == 0.0 { particle.fixed() } else { particle });
         }
         let shift = |id: ParticleId| ParticleId(id.0 + copy * system.particle_count());
         for named in system.constraints() {

@@ -200,7 +200,7 @@ fn units_are_kept() {
     let mut builder = System::builder(qhat::Dimension::Two);
     for (i, x) in state.positions().chunks(2).enumerate() {
         let particle = qhat::Particle::at(format!("n{i}"), x).with_mass(4.0 * system.masses()[i]);
-        builder.particle(if system.inverse_masses()[i] == 0.0 { particle.held() } else { particle });
+        builder.particle(if system.inverse_masses()[i] == 0.0 { particle.fixed() } else { particle });
     }
     for named in system.constraints() {
         builder.constraint(named.name.clone(), named.constraint.clone());

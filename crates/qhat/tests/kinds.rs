@@ -6,8 +6,8 @@
 mod systems;
 
 use qhat::{
-    Angle, Area, Constraint, Dimension, Distance, Expression, Gears, Integrator, Lengths, Particle, ParticleId,
-    Purpose, Schedule, Scope, Settings, Simulation, State, System, Volume, evaluate,
+    Angle, Area, Constraint, Dimension, Distance, Driven, Expression, Gears, Integrator, Lengths, Particle, ParticleId,
+    Purpose, Scope, Settings, Simulation, State, System, Volume, evaluate,
 };
 use systems::dense::{assert_all_close, assert_close, multiply};
 use systems::random::{Random, dimension};
@@ -16,7 +16,7 @@ use systems::random::{Random, dimension};
 struct Case {
     name: &'static str,
     d: usize,
-    make: fn(Schedule) -> Constraint,
+    make: fn(Driven) -> Constraint,
     /// What it is driven by.
     drive: &'static str,
     /// What of the particles p0 … is held at the drive.
@@ -139,7 +139,7 @@ const CASES: &[Case] = &[
 ];
 
 /// Back and forth between p0 and p1, once with half the weight.
-fn tackle(total: Schedule) -> Constraint {
+fn tackle(total: Driven) -> Constraint {
     Lengths::new(&[([P[0], P[1]], 1.0), ([P[2], P[1]], 2.0), ([P[1], P[0]], 0.5)], total).into()
 }
 
@@ -147,7 +147,7 @@ fn particle(name: &str) -> Option<ParticleId> {
     name.strip_prefix('p').and_then(|number| number.parse().ok()).map(ParticleId)
 }
 
-fn schedule(text: &str, later: f64) -> Schedule {
+fn schedule(text: &str, later: f64) -> Driven {
     let scope = Scope::new(Purpose::Time, Dimension::Two, &particle);
     Expression::parse(&text.replace('T', &format!("(t + ({later:?}))")), &scope).unwrap().into()
 }
@@ -259,7 +259,7 @@ fn moving(case: &Case) -> (System, State) {
     let q: Vec<f64> = places.iter().flat_map(|x| x[..case.d].to_vec()).collect();
     for (i, x) in q.chunks(case.d).enumerate() {
         let particle = Particle::at(format!("p{i}"), x).with_mass(1.0 + 0.3 * i as f64);
-        builder.particle(if i == 5 { particle.held() } else { particle });
+        builder.particle(if i == 5 { particle.fixed() } else { particle });
     }
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {

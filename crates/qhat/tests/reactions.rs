@@ -73,7 +73,7 @@ fn internal_forces_change_no_momentum() {
 
 fn hanging(form: DistanceForm) -> Terms {
     let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.5, 1.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.5, 1.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.5, -1.5]).with_mass(2.0));
     builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
@@ -105,7 +105,7 @@ fn tension_of_the_squared_form_is_minus_two_d_lambda() {
 #[test]
 fn a_strut_under_load_has_negative_tension() {
     let mut builder = System::builder(Dimension::Three);
-    let foot = builder.particle(Particle::at("foot", [0.0, 0.0, 0.0]).held());
+    let foot = builder.particle(Particle::at("foot", [0.0, 0.0, 0.0]).fixed());
     let load = builder.particle(Particle::at("load", [0.0, 2.0, 0.0]).with_mass(2.0));
     builder.constraint("strut", Distance::new(load, foot, 2.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();

@@ -36,7 +36,7 @@ fn particles_that_cannot_be() {
         assert_eq!(refuse(Particle::at("c", [2.0, 0.0]).with_mass(mass)), expected);
     }
     assert!(refuse(Particle::at("c", [2.0, 0.0]).with_mass(1e-320)).contains("mass"), "1/m is not finite");
-    let moving = Particle::at("c", [2.0, 0.0]).with_velocity([1.0, 0.0]).held();
+    let moving = Particle::at("c", [2.0, 0.0]).with_velocity([1.0, 0.0]).fixed();
     assert_eq!(refuse(moving), "particle `c`: a fixed particle cannot have a velocity");
 }
 

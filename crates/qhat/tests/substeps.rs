@@ -19,7 +19,7 @@ fn substeps_are_stable_under_tension() {
     const LINKS: usize = 40;
     let (mass, length, load) = (0.01, 0.01, 10.0);
     let mut builder = System::builder(Dimension::Two);
-    let mut last = builder.particle(Particle::at("p0", [0.0, 0.0]).held());
+    let mut last = builder.particle(Particle::at("p0", [0.0, 0.0]).fixed());
     for i in 1..=LINKS {
         let m = if i == LINKS { load } else { mass };
         let next = builder.particle(Particle::at(format!("p{i}"), [0.0, -length * i as f64]).with_mass(m));
@@ -45,7 +45,7 @@ fn substeps_are_stable_under_tension() {
 fn substeps_turn_no_rod_far() {
     for speed in [50.0, 500.0] {
         let mut builder = System::builder(Dimension::Two);
-        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [1.0, 0.0]).with_velocity([0.0, speed]));
         builder.constraint("rod", Distance::new(pivot, bob, 1.0));
         let (system, state) = builder.build().unwrap();

@@ -14,7 +14,7 @@ const MASS: f64 = 3.0;
 /// A weight at a place beside a held particle, on a rope or a strut, after a frame: what stands at a limit acts from the first step on.
 fn after_a_frame(at: [f64; 2], limits: impl Fn(ParticleId, ParticleId) -> Limits) -> Simulation {
     let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", at).with_mass(MASS));
     builder.constraint("link", limits(pivot, bob)).force(gravity());
     start(builder)
@@ -45,7 +45,7 @@ fn a_weight_on_a_rope_pulls_it_with_m_g() {
 #[test]
 fn a_rope_that_starts_taut_pulls_from_the_start() {
     let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(MASS));
     builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
     let (system, state) = builder.build().unwrap();
@@ -60,7 +60,7 @@ fn what_breaks_is_slack_from_then_on() {
         [|a, b| Limits::rope(a, b, 1.0), |a, b| Limits::between(a, b, 0.5, 1.0)];
     for make in limits {
         let mut builder = System::builder(Dimension::Two);
-        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [1.0, 0.0]).with_mass(MASS));
         builder.constraint("link", Limits { breaks_at: Some(2.0 * MASS * G), ..make(pivot, bob) }).force(gravity());
         let mut simulation = start(builder);

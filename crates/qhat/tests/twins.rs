@@ -4,10 +4,10 @@
 mod systems;
 
 use qhat::{
-    Anchor, Angle, Area, Constraint, Curve, Dimension, Direction, Distance, DistanceForm, Expression,
+    Anchor, Angle, Area, Constraint, Curve, Dimension, Direction, Distance, DistanceForm, Driven, Expression,
     ExpressionConstraint, Gears, Gravity, Integrator, Lengths, Line, Nail, NailForm, OnCircle, OnCurve, OnLine,
-    OnPlane, OnSphere, Particle, ParticleId, Plane, Purpose, Relation, Schedule, Scope, Settings, Simulation, Spring,
-    System, Volume, rigid_rods,
+    OnPlane, OnSphere, Particle, ParticleId, Plane, Purpose, Relation, Scope, Settings, Simulation, Spring, System,
+    Volume, rigid_rods,
 };
 use systems::random::dimension;
 
@@ -18,7 +18,7 @@ struct Case {
     /// Particles that start elsewhere than in `PLACES`, so that the constraints hold.
     at: &'static [(usize, [f64; 3])],
     /// The kind, driven by S where it can be.
-    make: fn(Schedule) -> Vec<Constraint>,
+    make: fn(Driven) -> Vec<Constraint>,
     /// The residuals of its twin. S is what the text is at the start, and `drive` more; without one the kind is driven by `drive` alone.
     twin: &'static [&'static str],
     /// A function of t, 0 at the start.
@@ -40,7 +40,7 @@ macro_rules! kinds {
 
 kinds! {
     Distance Nail Relation Lengths Angle Gears Area Volume Direction OnLine OnPlane OnSphere OnCircle OnCurve;
-    Limits Barrier ExpressionConstraint
+    Limits Obstacle ExpressionConstraint
 }
 
 const P: [ParticleId; 5] = [ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(3), ParticleId(4)];
@@ -62,7 +62,7 @@ const fn twin(
     name: &'static str,
     d: usize,
     at: &'static [(usize, [f64; 3])],
-    make: fn(Schedule) -> Vec<Constraint>,
+    make: fn(Driven) -> Vec<Constraint>,
     twin: &'static [&'static str],
 ) -> Case {
     Case { name, d, at, make, twin, drive: "0" }
@@ -72,7 +72,7 @@ const fn driven(
     name: &'static str,
     d: usize,
     at: &'static [(usize, [f64; 3])],
-    make: fn(Schedule) -> Vec<Constraint>,
+    make: fn(Driven) -> Vec<Constraint>,
     twin: &'static [&'static str],
     drive: &'static str,
 ) -> Case {
@@ -428,7 +428,7 @@ fn weights() -> Constraint {
 }
 
 /// A direction that turns about z.
-fn turning(z: f64) -> [Schedule; 3] {
+fn turning(z: f64) -> [Driven; 3] {
     [time("cos(t)"), time("sin(t)"), z.into()]
 }
 
@@ -455,7 +455,7 @@ fn parse(text: &str, purpose: Purpose, d: usize) -> Expression {
     Expression::parse(text, &scope).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-fn time(text: &str) -> Schedule {
+fn time(text: &str) -> Driven {
     parse(text, Purpose::Time, 2).into()
 }
 

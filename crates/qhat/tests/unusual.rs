@@ -28,7 +28,7 @@ fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
             let particle = Particle::at(format!("{chain}-{i}"), x.clone()).with_mass(mass);
             let (is_first, is_last) = (i == 0, i == links && links > 0);
             let is_held = is_first && first == 0 || is_last && last == 0;
-            let id = builder.particle(if is_held { particle.held() } else { particle });
+            let id = builder.particle(if is_held { particle.fixed() } else { particle });
             count += 1;
             if is_first && first == 1 || is_last && last == 1 {
                 builder.constraint(
@@ -93,7 +93,7 @@ fn lanes_move_any_open_chains_as_the_general_path_does() {
             (simulation, solver.unwrap())
         };
         let ((lanes, by), (general, by_rows)) = (run(false), run(true));
-        assert_eq!((by, by_rows), (Solver::Lanes, Solver::Rows), "seed {seed}");
+        assert_eq!((by, by_rows), (Solver::Chains, Solver::Rows), "seed {seed}");
         let pairs = lanes.state().positions().iter().zip(general.state().positions());
         let farthest = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         // Whipping chains multiply an error of 1e-11 a substep; at 1e-9 one of these came out 2e-4 m apart.
@@ -114,7 +114,7 @@ fn nothing_to_move_and_one_free_particle() {
             simulation.step().unwrap();
             assert_eq!(simulation.state().time(), 0.25);
             let mut builder = System::builder(dimension);
-            builder.particle(Particle::at("fixed", vec![1.0; dimension.number()]).held());
+            builder.particle(Particle::at("fixed", vec![1.0; dimension.number()]).fixed());
             builder.particle(Particle::at("free", vec![0.0; dimension.number()]));
             builder.force(systems::gravity());
             let (system, state) = builder.build().unwrap();
@@ -206,7 +206,7 @@ fn springs_without_measure_do_not_end_a_run() {
         for is_general in [false, true] {
             let (system, state) = {
                 let mut builder = System::builder(Dimension::Two);
-                let a = builder.particle(Particle::at("a", [0.0, 0.0]).held());
+                let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
                 let b = builder.particle(Particle::at("b", [1.0, 0.0]));
                 let c = builder.particle(Particle::at("c", [1.5, 0.0]));
                 builder.constraint("bc", Distance::new(b, c, 0.5));
@@ -251,7 +251,7 @@ fn long_stretches_keep_their_pivots_in_range() {
     let (system, state) = systems::chain(4000, 1.0);
     let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Dop853, 1e-3)).unwrap();
     let report = simulation.step().unwrap();
-    assert_eq!((report.solver, &report.warnings[..]), (Solver::Lanes, &[][..]));
+    assert_eq!((report.solver, &report.warnings[..]), (Solver::Chains, &[][..]));
 }
 
 #[test]
@@ -265,13 +265,13 @@ fn the_classic_formulation_and_two_rods_between_the_same_particles() {
         (simulation.state().positions().to_vec(), solver)
     };
     let ((lanes, by), (rows, by_rows)) = (run(&system), run(&classic));
-    assert_eq!((by, by_rows), (Solver::Lanes, Solver::Rows));
+    assert_eq!((by, by_rows), (Solver::Chains, Solver::Rows));
     assert!(lanes.iter().zip(&rows).all(|(a, b)| (a - b).abs() < 1e-6));
 
     for is_held in [false, true] {
         let mut builder = System::builder(Dimension::Two);
         let a = Particle::at("a", [0.0, 0.0]);
-        let a = builder.particle(if is_held { a.held() } else { a });
+        let a = builder.particle(if is_held { a.fixed() } else { a });
         let b = builder.particle(Particle::at("b", [1.0, 0.0]));
         builder.constraint("one", Distance::new(a, b, 1.0)).constraint("other", Distance::new(b, a, 1.0));
         builder.force(systems::gravity());

@@ -11,7 +11,7 @@ fn hanging(links: usize, dimension: Dimension) -> (System, State, Vec<f64>) {
     let d = dimension.number();
     let place = |y: f64| if d == 2 { vec![0.3, y] } else { vec![0.3, y, -0.2] };
     let mut builder = System::builder(dimension);
-    let mut last = builder.particle(Particle::at("p0", place(0.0)).held());
+    let mut last = builder.particle(Particle::at("p0", place(0.0)).fixed());
     let mut masses = Vec::new();
     for i in 1..=links {
         masses.push(0.01 * (1 + i * i % 7) as f64 * if i == links { 100.0 } else { 1.0 });
@@ -69,11 +69,11 @@ fn funicular_chain_is_in_equilibrium() {
     let slope = |k: usize| mass * G / pull * (k as f64 - 0.5 * (LINKS as f64 - 1.0));
     let mut builder = System::builder(Dimension::Two);
     let mut y = 0.0;
-    let mut last = builder.particle(Particle::at("left", [0.0, 0.0]).held());
+    let mut last = builder.particle(Particle::at("left", [0.0, 0.0]).fixed());
     for k in 0..LINKS {
         y += slope(k) * spacing;
         let particle = Particle::at(format!("p{k}"), [spacing * (k + 1) as f64, y]).with_mass(mass);
-        let next = builder.particle(if k + 1 == LINKS { particle.held() } else { particle });
+        let next = builder.particle(if k + 1 == LINKS { particle.fixed() } else { particle });
         builder.constraint(format!("link{k}"), Distance::new(last, next, spacing * (1.0 + slope(k) * slope(k)).sqrt()));
         last = next;
     }
@@ -92,8 +92,8 @@ fn funicular_chain_is_in_equilibrium() {
 fn a_mass_on_two_ropes() {
     let (alpha, beta, mass): (f64, f64, f64) = (0.5, 1.1, 3.0);
     let mut builder = System::builder(Dimension::Two);
-    let left = builder.particle(Particle::at("left", [-libm::cos(alpha), libm::sin(alpha)]).held());
-    let right = builder.particle(Particle::at("right", [2.0 * libm::cos(beta), 2.0 * libm::sin(beta)]).held());
+    let left = builder.particle(Particle::at("left", [-libm::cos(alpha), libm::sin(alpha)]).fixed());
+    let right = builder.particle(Particle::at("right", [2.0 * libm::cos(beta), 2.0 * libm::sin(beta)]).fixed());
     let load = builder.particle(Particle::at("load", [0.0, 0.0]).with_mass(mass));
     builder.constraint("left", Distance::new(left, load, 1.0)).constraint("right", Distance::new(load, right, 2.0));
     builder.force(systems::gravity());

@@ -29,7 +29,7 @@ fn with_every_force(random: &mut Random, d: usize) -> (System, State) {
     for (i, x) in points.iter().enumerate() {
         let particle = Particle::at(format!("p{i}"), x.clone()).with_mass(random.within(0.5, 2.0));
         let v = random.numbers(d, -0.5, 0.5);
-        builder.particle(if i == 0 { particle.held() } else { particle.with_velocity(v) });
+        builder.particle(if i == 0 { particle.fixed() } else { particle.with_velocity(v) });
     }
     let p: Vec<ParticleId> = (0..7).map(ParticleId).collect();
     for (a, b) in [(0, 1), (1, 2), (2, 3), (1, 4)] {
@@ -98,8 +98,8 @@ fn a_torsion_pendulum_swings_in_its_period() {
         let (k, m, r) = (5.0, 0.8, 0.7);
         let at = |angle: f64| [r * libm::cos(angle), r * libm::sin(angle), 0.0];
         let mut builder = System::builder(dimension(d));
-        let a = builder.particle(Particle::at("a", &[1.0, 0.0, 0.0][..d]).held());
-        let b = builder.particle(Particle::at("b", &[0.0; 3][..d]).held());
+        let a = builder.particle(Particle::at("a", &[1.0, 0.0, 0.0][..d]).fixed());
+        let b = builder.particle(Particle::at("b", &[0.0; 3][..d]).fixed());
         let c = builder.particle(Particle::at("c", &at(2.1)[..d]).with_mass(m));
         builder.constraint("arm", Distance::new(b, c, r));
         builder.force(TorsionSpring { a, b, c, stiffness: k, damping: 0.0, angle: 1.2 });
@@ -247,7 +247,7 @@ fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
 fn a_piston_settles_on_its_gas() {
     for integrator in [Integrator::Implicit, Integrator::Bdf2] {
         let mut builder = System::builder(Dimension::Two);
-        let [a, b] = [0.0, 1.0].map(|x| builder.particle(Particle::at(format!("low{x}"), [x, 0.0]).held()));
+        let [a, b] = [0.0, 1.0].map(|x| builder.particle(Particle::at(format!("low{x}"), [x, 0.0]).fixed()));
         let [c, d] = [0.0, 1.0].map(|x| builder.particle(Particle::at(format!("top{x}"), [x, 0.01]).with_mass(0.5)));
         for (name, top, x) in [("left", c, 0.0), ("right", d, 1.0)] {
             builder.constraint(name, qhat::OnLine::fixed(top, [x, 0.0, 0.0], [0.0, 1.0, 0.0]));

@@ -15,8 +15,8 @@ fn unit(angle: f64) -> [f64; 2] {
 #[test]
 fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     let mut builder = System::builder(Dimension::Two);
-    let sun = builder.particle(Particle::at("sun", [0.0, 0.0]).held());
-    let mark = builder.particle(Particle::at("mark", [1.0, 0.0]).held());
+    let sun = builder.particle(Particle::at("sun", [0.0, 0.0]).fixed());
+    let mark = builder.particle(Particle::at("mark", [1.0, 0.0]).fixed());
     let planet = builder.particle(Particle::at("planet", [1.5, 0.0]).with_velocity([0.0, 1.5]));
     // Two points opposite each other, so that the planet is balanced.
     let one = builder.particle(Particle::at("one", [2.0, 0.0]).with_velocity([0.0, 3.0]));

@@ -39,7 +39,7 @@ fn run(simulation: &mut Simulation, frames: usize) -> (StepReport, f64, f64) {
 fn loaded_chain(dimension: Dimension, links: usize, ratio: f64) -> (System, State) {
     let at = |x: f64| [x, 0.0, 0.0][..dimension.number()].to_vec();
     let mut builder = System::builder(dimension);
-    let mut last = builder.particle(Particle::at("pin", at(0.0)).held());
+    let mut last = builder.particle(Particle::at("pin", at(0.0)).fixed());
     for i in 1..=links {
         let mass = if i == links { 0.01 * ratio } else { 0.01 };
         let bead = builder.particle(Particle::at(format!("bead{i}"), at(0.01 * i as f64)).with_mass(mass));
@@ -63,7 +63,7 @@ fn cloth(n: usize) -> (System, State) {
             let angle = turn * i as f64 - HALF_ANGLE;
             let position = [radius * libm::sin(angle), -radius * libm::cos(angle), side * j as f64];
             let point = Particle::at(format!("p{i},{j}"), position).with_mass(0.01);
-            points.push(builder.particle(if j == 0 && (i == 0 || i == n - 1) { point.held() } else { point }));
+            points.push(builder.particle(if j == 0 && (i == 0 || i == n - 1) { point.fixed() } else { point }));
         }
     }
     for j in 0..n {
@@ -135,7 +135,7 @@ fn a_cloth_hangs_and_loses_energy() {
 fn a_column_buckles_to_the_side_it_is_pushed() {
     for push in [1e-4, -1e-4] {
         let mut builder = System::builder(Dimension::Two);
-        let foot = builder.particle(Particle::at("foot", [0.0, 0.0]).held());
+        let foot = builder.particle(Particle::at("foot", [0.0, 0.0]).fixed());
         let knee = builder.particle(Particle::at("knee", [0.0, 0.5]).with_mass(0.5).with_velocity([push, 0.0]));
         let load = builder.particle(Particle::at("load", [0.0, 1.0]));
         builder.constraint("shin", Distance::new(foot, knee, 0.5)).constraint("thigh", Distance::new(knee, load, 0.5));
@@ -161,7 +161,7 @@ fn a_column_buckles_to_the_side_it_is_pushed() {
 fn a_redundant_brace_carries_as_without() {
     let frame = |braces: usize| {
         let mut builder = System::builder(Dimension::Two);
-        let a = builder.particle(Particle::at("a", [0.0, 0.0]).held());
+        let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
         let b = builder.particle(Particle::at("b", [1.0, 0.0]));
         let c = builder.particle(Particle::at("c", [1.0, 1.0]));
         let d = builder.particle(Particle::at("d", [0.0, 1.0]));
@@ -192,8 +192,8 @@ fn a_redundant_brace_carries_as_without() {
 fn a_parallelogram_goes_through_flat() {
     for integrator in IMPLICIT {
         let mut builder = System::builder(Dimension::Two);
-        let left = builder.particle(Particle::at("left", [0.0, 0.0]).held());
-        let right = builder.particle(Particle::at("right", [1.0, 0.0]).held());
+        let left = builder.particle(Particle::at("left", [0.0, 0.0]).fixed());
+        let right = builder.particle(Particle::at("right", [1.0, 0.0]).fixed());
         let a = builder.particle(Particle::at("a", [0.0, -1.0]).with_velocity([8.0, 0.0]));
         let b = builder.particle(Particle::at("b", [1.0, -1.0]).with_velocity([8.0, 0.0]));
         for (name, p, q) in [("la", left, a), ("rb", right, b), ("ab", a, b)] {
@@ -218,7 +218,7 @@ fn a_compliant_rod_sags_by_its_compliance() {
     let weight = mass * 9.81;
     for integrator in Integrator::ALL {
         let mut builder = System::builder(Dimension::Two);
-        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).held());
+        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(mass));
         // Nearly critical: 2 √(m/α) is 110 N·s/m.
         builder.constraint("rod", Distance::new(pin, bob, 1.0).with_compliance(compliance, 100.0));
@@ -240,7 +240,7 @@ fn a_compliant_rod_sags_by_its_compliance() {
 fn a_compliant_rod_is_a_spring() {
     let build = |as_rod: bool| {
         let mut builder = System::builder(Dimension::Two);
-        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).held());
+        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).fixed());
         let elbow = builder.particle(Particle::at("elbow", [1.0, 0.0]));
         let bob = builder.particle(Particle::at("bob", [1.6, 0.8]).with_mass(0.5));
         builder.constraint("rigid", Distance::new(pin, elbow, 1.0));
@@ -283,7 +283,7 @@ fn a_compliant_rod_is_a_spring() {
 fn a_stiff_spring_does_not_bound_the_step() {
     for integrator in IMPLICIT {
         let mut builder = System::builder(Dimension::Two);
-        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).held());
+        let pin = builder.particle(Particle::at("pin", [0.0, 0.0]).fixed());
         let a = builder.particle(Particle::at("a", [0.5, 0.0]).with_mass(1e-3));
         let b = builder.particle(Particle::at("b", [1.0, 0.0]).with_mass(1e-3));
         builder.constraint("rod", Distance::new(pin, a, 0.5));

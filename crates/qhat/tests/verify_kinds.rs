@@ -3,8 +3,8 @@
 mod systems;
 
 use qhat::{
-    Anchor, Constraint, Curve, Dimension, Direction, Distance, Expression, Integrator, OnCircle, OnCurve, OnLine,
-    OnPlane, OnSphere, Particle, ParticleId, Purpose, Relation, Schedule, Scope, Settings, Simulation, State, System,
+    Anchor, Constraint, Curve, Dimension, Direction, Distance, Driven, Expression, Integrator, OnCircle, OnCurve,
+    OnLine, OnPlane, OnSphere, Particle, ParticleId, Purpose, Relation, Scope, Settings, Simulation, State, System,
 };
 use std::f64::consts::PI;
 use systems::G;
@@ -14,13 +14,13 @@ fn expression(text: &str, purpose: Purpose, dimension: Dimension) -> Expression 
     Expression::parse(text, &Scope::new(purpose, dimension, &|_| None)).unwrap()
 }
 
-fn schedule(text: &str) -> Schedule {
+fn schedule(text: &str) -> Driven {
     expression(text, Purpose::Time, Dimension::Two).into()
 }
 
 /// A point that moves in the plane.
-fn driven(x: &str, y: &str) -> [Schedule; 3] {
-    [schedule(x), schedule(y), Schedule::Constant(0.0)]
+fn driven(x: &str, y: &str) -> [Driven; 3] {
+    [schedule(x), schedule(y), Driven::Constant(0.0)]
 }
 
 fn curve(components: &[&str], from: f64, to: f64) -> Curve {
@@ -359,7 +359,7 @@ fn what_cannot_be_is_refused() {
     refused(three, |a, _| OnPlane::fixed(a, [0.0; 3], [0.0; 3]).into(), "must not be zero");
     refused(two, |a, _| OnSphere::new(a, a, 1.0).into(), "named twice");
     refused(two, |a, b| OnSphere::new(a, b, 0.0).into(), "must be positive");
-    refused(two, |a, _| OnSphere::new(a, Anchor::Point([f64::NAN; 3].map(Schedule::Constant)), 1.0).into(), "finite");
+    refused(two, |a, _| OnSphere::new(a, Anchor::Point([f64::NAN; 3].map(Driven::Constant)), 1.0).into(), "finite");
     refused(two, |a, b| OnCircle::new(a, b, [0.0, 0.0, 1.0], 1.0).into(), "needs three dimensions");
     refused(three, |a, _| OnCurve { particle: a, curve: curve(&["s", "s"], 0.0, 1.0) }.into(), "3 components");
     let not_a_curve = |made: Result<Curve, String>, words: &str| assert!(made.unwrap_err().contains(words));

@@ -58,7 +58,7 @@ fn conical_pendulum_keeps_its_height() {
     let alpha: f64 = 0.7;
     let (sine, cosine) = (libm::sin(alpha), libm::cos(alpha));
     let mut builder = qhat::System::builder(qhat::Dimension::Three);
-    let pivot = builder.particle(qhat::Particle::at("pivot", [0.0; 3]).held());
+    let pivot = builder.particle(qhat::Particle::at("pivot", [0.0; 3]).fixed());
     let speed = (G * sine * sine / cosine).sqrt();
     let bob = qhat::Particle::at("bob", [sine, -cosine, 0.0]).with_velocity([0.0, 0.0, speed]).with_mass(2.0);
     let bob = builder.particle(bob);

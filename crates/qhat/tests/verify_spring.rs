@@ -15,7 +15,7 @@ const REST: f64 = 1.0;
 /// A mass on a horizontal spring, stretched by 0.3 m and let go; along x only.
 fn oscillator(damping: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
-    let wall = builder.particle(Particle::at("wall", [0.0, 0.0]).held());
+    let wall = builder.particle(Particle::at("wall", [0.0, 0.0]).fixed());
     let mass = builder.particle(Particle::at("mass", [REST + 0.3, 0.0]).with_mass(MASS));
     builder.force(Spring { a: wall, b: mass, stiffness: STIFFNESS, damping, rest: REST });
     builder.build().unwrap()
@@ -75,7 +75,7 @@ fn a_spring_at_rest_length_is_at_rest() {
 #[test]
 fn spring_sags_by_weight_over_stiffness() {
     let mut builder = System::builder(Dimension::Three);
-    let top = builder.particle(Particle::at("top", [0.0; 3]).held());
+    let top = builder.particle(Particle::at("top", [0.0; 3]).fixed());
     let mass = builder.particle(Particle::at("mass", [0.0, -REST, 0.0]).with_mass(MASS));
     builder
         .force(Spring { a: mass, b: top, stiffness: STIFFNESS, damping: 20.0, rest: REST })
@@ -98,7 +98,7 @@ fn a_pendulum_on_a_spring_bounces_and_swings() {
     let small = 1e-5;
     let at_quarters = |aside: f64, down: f64, omega: f64| {
         let mut builder = System::builder(Dimension::Two);
-        let top = builder.particle(Particle::at("top", [0.0; 2]).held());
+        let top = builder.particle(Particle::at("top", [0.0; 2]).fixed());
         let bob = builder.particle(Particle::at("bob", [aside, -l - down]).with_mass(MASS));
         builder.force(Spring { a: bob, b: top, stiffness: STIFFNESS, damping: 0.0, rest: REST });
         builder.force(systems::gravity());

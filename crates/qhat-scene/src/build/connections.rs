@@ -3,7 +3,7 @@
 use super::Assembly;
 use crate::model::{Constraint, Distance, DistanceForm, Driven, Id, Nail, NailForm, Name, Spring};
 use crate::tree::Node;
-use qhat::{ParticleId, Schedule};
+use qhat::ParticleId;
 
 impl Assembly<'_, '_, '_> {
     /// Takes the names that the file gives, before any that are made from ids.
@@ -76,7 +76,7 @@ impl Assembly<'_, '_, '_> {
         let (a, b) = self.pair(&distance.between, place)?;
         let length = match &distance.length {
             Some(driven) => match self.schedule(driven, place.key("length"))? {
-                Schedule::Constant(length) => length,
+                qhat::Driven::Constant(length) => length,
                 radius => return self.add_driven_rod(distance, radius, (a, b), place),
             },
             None => self.measured_length("rod", &distance.between, (a, b), place)?,
@@ -118,7 +118,7 @@ impl Assembly<'_, '_, '_> {
     fn add_driven_rod(
         &mut self,
         distance: &Distance,
-        radius: Schedule,
+        radius: qhat::Driven,
         (a, b): (ParticleId, ParticleId),
         place: &Node,
     ) -> Option<()> {
@@ -145,7 +145,7 @@ impl Assembly<'_, '_, '_> {
         let start = self.start(particle);
         let point = self.schedules_or(nail.at.as_ref(), place.key("at"), start)?;
         let name = self.name_of(nail.id.as_ref(), format!("nail({})", nail.particle.0));
-        if let [Schedule::Constant(x), Schedule::Constant(y), Schedule::Constant(z)] = point {
+        if let [qhat::Driven::Constant(x), qhat::Driven::Constant(y), qhat::Driven::Constant(z)] = point {
             self.builder.constraint(name, qhat::Nail { particle, at: [x, y, z], form: nail.form.into() });
         } else if nail.form == NailForm::Vector {
             self.builder.constraint(name, qhat::Relation::driven(particle, point));

@@ -5,7 +5,7 @@ use crate::model::contact::{Ball, Box, HalfSpace, Limits, Rope};
 use crate::model::{Id, Name};
 use crate::report::Report;
 use crate::tree::Node;
-use qhat::{Barrier, Settings, State, StepError, Surface, System};
+use qhat::{Obstacle, Settings, State, StepError, Surface, System};
 
 impl Assembly<'_, '_, '_> {
     pub(super) fn add_rope(&mut self, rope: &Rope, place: &Node) -> Option<()> {
@@ -103,7 +103,7 @@ impl Assembly<'_, '_, '_> {
             let name = format!("{stem}({})", self.builder.name(particle));
             let name = self.free_constraint_name(name);
             self.places.insert(name.clone(), place.span.clone());
-            self.builder.constraint(name, Barrier { particle, surface: surface.clone(), restitution, friction });
+            self.builder.constraint(name, Obstacle { particle, surface: surface.clone(), restitution, friction });
         }
         Some(())
     }

@@ -3,13 +3,13 @@
 use super::Assembly;
 use crate::model::{Driven, DrivenVector, Parameters};
 use crate::tree::Node;
-use qhat::{Constraint, Purpose, Schedule};
+use qhat::{Constraint, Purpose};
 
 impl Assembly<'_, '_, '_> {
     /// The number or function of t. A text without t is the number it stands for.
-    pub(super) fn schedule(&mut self, driven: &Driven, place: &Node) -> Option<Schedule> {
+    pub(super) fn schedule(&mut self, driven: &Driven, place: &Node) -> Option<qhat::Driven> {
         match driven {
-            Driven::Number(number) => Some(Schedule::Constant(*number)),
+            Driven::Number(number) => Some(qhat::Driven::Constant(*number)),
             Driven::Text(text) => {
                 let function = self.expression(text, Purpose::Time, &Parameters::new(), place)?;
                 let is_number = !function.uses_time();
@@ -19,8 +19,8 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// As the engine takes points: z = 0 in two dimensions.
-    pub(super) fn schedules(&mut self, driven: &DrivenVector, place: &Node) -> Option<[Schedule; 3]> {
-        let mut schedules = [0.0; 3].map(Schedule::Constant);
+    pub(super) fn schedules(&mut self, driven: &DrivenVector, place: &Node) -> Option<[qhat::Driven; 3]> {
+        let mut schedules = [0.0; 3].map(qhat::Driven::Constant);
         let mut complete = true;
         for (index, component) in driven.0.iter().enumerate() {
             match self.schedule(component, place.item(index)) {
@@ -37,10 +37,10 @@ impl Assembly<'_, '_, '_> {
         driven: Option<&DrivenVector>,
         place: &Node,
         start: [f64; 3],
-    ) -> Option<[Schedule; 3]> {
+    ) -> Option<[qhat::Driven; 3]> {
         match driven {
             Some(driven) => self.schedules(driven, place),
-            None => Some(start.map(Schedule::Constant)),
+            None => Some(start.map(qhat::Driven::Constant)),
         }
     }
 
@@ -50,7 +50,7 @@ impl Assembly<'_, '_, '_> {
         name: String,
         given: &Option<Driven>,
         place: (&Node, &str),
-        make: impl Fn(Schedule) -> Constraint,
+        make: impl Fn(qhat::Driven) -> Constraint,
     ) -> Option<()> {
         let (table, key) = place;
         let schedule = match given {

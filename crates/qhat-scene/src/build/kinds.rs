@@ -4,7 +4,7 @@ use super::Assembly;
 use crate::model::kinds::{CenterOfMass, Circle, Coincidence, Direction, Line, Midpoint, Plane, Relation, Sphere};
 use crate::model::{Driven, DrivenVector, Id, Name};
 use crate::tree::Node;
-use qhat::{Anchor, Constraint, ParticleId, Schedule};
+use qhat::{Anchor, Constraint, ParticleId};
 
 impl Assembly<'_, '_, '_> {
     /// Adds a constraint under its own name, or one made from what it is.
@@ -69,7 +69,7 @@ impl Assembly<'_, '_, '_> {
         let found: Option<Vec<ParticleId>> =
             it.particles.iter().enumerate().map(|(i, id)| self.particle(id, list.item(i))).collect();
         let terms: Vec<_> = found?.into_iter().map(|id| (id, self.builder.mass(id))).collect();
-        let terms = qhat::Relation::center_of_mass(terms, [0.0; 3].map(Schedule::Constant)).terms;
+        let terms = qhat::Relation::center_of_mass(terms, [0.0; 3].map(qhat::Driven::Constant)).terms;
         let wanted = format!("center-of-mass({})", it.particles[0].0);
         self.add_relation_of(it.id.as_ref(), wanted, terms, it.at.as_ref(), place)
     }
@@ -216,7 +216,7 @@ impl Assembly<'_, '_, '_> {
         center: Option<&DrivenVector>,
         radius: Option<&Driven>,
         place: &Node,
-    ) -> Option<(ParticleId, Anchor, Schedule)> {
+    ) -> Option<(ParticleId, Anchor, qhat::Driven)> {
         let (particle, center) = match (around, center) {
             (Some(around), None) => {
                 let named = [(particle, place.key("particle")), (around, place.key("around"))];
@@ -248,7 +248,7 @@ impl Assembly<'_, '_, '_> {
                     self.report.error(place.span.clone(), message, Some("give `radius` [m]".into()));
                     return None;
                 }
-                Schedule::Constant(length)
+                qhat::Driven::Constant(length)
             }
         };
         Some((particle, center, radius))

@@ -3,7 +3,7 @@
 use super::Assembly;
 use crate::model::{Angle, Area, Gears, Id, LengthRatio, Pulley, Rack, Rigid, Volume};
 use crate::tree::Node;
-use qhat::{Constraint, Distance, Lengths, ParticleId, Schedule, rigid_rods};
+use qhat::{Constraint, Distance, Lengths, ParticleId, rigid_rods};
 use std::f64::consts::PI;
 
 /// What is nearer to 0 or π [rad] than this is lost in the roundoff of a step.
@@ -67,7 +67,7 @@ impl Assembly<'_, '_, '_> {
             None => None,
         };
         let direction = direction.as_ref().map_or([1.0, 0.0, 0.0], |direction| direction.padded());
-        let make = |angle: Schedule| -> Constraint {
+        let make = |angle: qhat::Driven| -> Constraint {
             match from {
                 Some(from) => qhat::Angle::between(from, arm, angle).into(),
                 None => qhat::Angle::from_direction(direction, arm, angle).into(),
@@ -94,7 +94,7 @@ impl Assembly<'_, '_, '_> {
         let wheels = [one?, other?];
         let [[Id(a), _], [Id(b), _]] = &gears.wheels;
         let name = self.name_of(gears.id.as_ref(), format!("gears({a}-{b})"));
-        let make = |angle: Schedule| qhat::Gears::mesh(wheels, gears.teeth, angle).into();
+        let make = |angle: qhat::Driven| qhat::Gears::mesh(wheels, gears.teeth, angle).into();
         self.in_plane(place, "gears mesh")?;
         self.add_driven(name, &gears.angle, (place, "angle"), make)
     }
@@ -111,7 +111,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let name = self.name_of(rack.id.as_ref(), format!("rack({})", rack.particle.0));
-        self.add_driven(name, &rack.angle, (place, "angle"), |angle: Schedule| {
+        self.add_driven(name, &rack.angle, (place, "angle"), |angle: qhat::Driven| {
             qhat::Gears::rack(pinion, particle, [x, y], rack.radius, angle).into()
         })
     }
@@ -143,7 +143,7 @@ impl Assembly<'_, '_, '_> {
         let corners = self.named(&area.corners, place.key("corners"))?;
         self.in_plane(place, "a polygon keeps its area")?;
         let name = self.name_of(area.id.as_ref(), format!("area({})", area.corners[0].0));
-        self.add_driven(name, &area.area, (place, "area"), |area: Schedule| {
+        self.add_driven(name, &area.area, (place, "area"), |area: qhat::Driven| {
             qhat::Area { corners: corners.clone(), area }.into()
         })
     }
@@ -160,7 +160,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let name = self.name_of(volume.id.as_ref(), format!("volume({})", volume.faces[0][0].0));
-        self.add_driven(name, &volume.volume, (place, "volume"), |volume: Schedule| {
+        self.add_driven(name, &volume.volume, (place, "volume"), |volume: qhat::Driven| {
             qhat::Volume::new(&faces, volume).into()
         })
     }

@@ -4,8 +4,8 @@
 //! asking for again. What has no picture (an expression) has no mark.
 
 use qhat::{
-    Anchor, Barrier, Constraint, DrivenPoint, Facet, Force, Gears, Limits, Line, OnCircle, OnSphere, ParticleId, Plane,
-    Relation, Schedule, State, Surface, System,
+    Anchor, Constraint, Driven, DrivenPoint, Facet, Force, Gears, Limits, Line, Obstacle, OnCircle, OnSphere,
+    ParticleId, Plane, Relation, State, Surface, System,
 };
 
 /// Pieces of a drawn wire: on a whole screen each is some ten pixels long.
@@ -36,8 +36,8 @@ impl Mark {
     }
 
     /// Says that it follows t if one of these does.
-    fn following<'a>(self, schedules: impl IntoIterator<Item = &'a Schedule>) -> Self {
-        let driven = schedules.into_iter().any(|schedule| matches!(schedule, Schedule::Function(_)));
+    fn following<'a>(self, schedules: impl IntoIterator<Item = &'a Driven>) -> Self {
+        let driven = schedules.into_iter().any(|schedule| matches!(schedule, Driven::Function(_)));
         Mark { driven: self.driven || driven, ..self }
     }
 
@@ -89,7 +89,7 @@ fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &
     match constraint {
         Constraint::Distance(_) | Constraint::Nail(_) | Constraint::ExpressionConstraint(_) => (),
         Constraint::Limits(limits) => add_limits(limits, marks),
-        Constraint::Barrier(barrier) => add_barrier(barrier, marks),
+        Constraint::Obstacle(barrier) => add_barrier(barrier, marks),
         Constraint::Relation(relation) => add_relation(relation, t, marks),
         Constraint::Lengths(lengths) => {
             let is_cord = lengths.segments().all(|(_, weight)| weight > 0.0);
@@ -142,7 +142,7 @@ fn add_limits(limits: &Limits, marks: &mut Vec<Mark>) {
     });
 }
 
-fn add_barrier(barrier: &Barrier, marks: &mut Vec<Mark>) {
+fn add_barrier(barrier: &Obstacle, marks: &mut Vec<Mark>) {
     let mark = match barrier.surface {
         Surface::HalfSpace { normal, offset } => {
             let size = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
@@ -173,7 +173,7 @@ fn add_relation(relation: &Relation, t: f64, marks: &mut Vec<Mark>) {
 fn add_sphere(sphere: &OnSphere, system: &System, t: f64, marks: &mut Vec<Mark>) {
     let OnSphere { particle, center, radius } = sphere;
     let size = radius.value(t);
-    let still = matches!(radius, Schedule::Constant(_)) && matches!(center, Anchor::Point(_));
+    let still = matches!(radius, Driven::Constant(_)) && matches!(center, Anchor::Point(_));
     let mark = if still && system.dimension() == 2 {
         Mark::new("ring", []).at([[0.0, 0.0, 1.0]])
     } else if still {

@@ -45,7 +45,7 @@ fn a_rope_and_a_strut_know_their_limits() {
 
 #[test]
 fn what_is_led_moves_with_time_and_nothing_else_does() {
-    let radius = Schedule::Function(expression("3 + sin(t)", Purpose::Time));
+    let radius = Driven::Function(expression("3 + sin(t)", Purpose::Time));
     let rod = || Constraint::from(OnSphere::new(B, A, radius.clone()));
     let rail = Constraint::from(OnLine::fixed(C, [0.0, 3.0, 0.0], [1.0, 0.0, 0.0]));
     let [first, later] = [0.0, 1.0].map(|t| drawn([rod(), rail.clone()], t));
@@ -70,7 +70,7 @@ fn a_wire_is_drawn_from_end_to_end_once() {
 #[test]
 fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
     let surface = Surface::HalfSpace { normal: [0.0, 2.0, 0.0], offset: -1.0 };
-    let ground = drawn([A, B, C].map(|particle| Barrier::new(particle, surface.clone()).into()), 0.0);
+    let ground = drawn([A, B, C].map(|particle| Obstacle::new(particle, surface.clone()).into()), 0.0);
     assert_eq!(kinds(&ground), ["ground"]);
     assert_eq!(ground[0].points, [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]]);
 }
@@ -87,12 +87,12 @@ fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
 
 #[test]
 fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
-    let point = [2.0, 4.0, 0.0].map(Schedule::Constant);
+    let point = [2.0, 4.0, 0.0].map(Driven::Constant);
     let nail = drawn([Relation { terms: vec![(A, 2.0)], point }.into()], 0.0);
     assert_eq!((nail[0].kind, nail[0].points.as_slice()), ("nail", [[1.0, 2.0, 0.0]].as_slice()));
     let middle = drawn([Relation::midpoint(C, A, B).into()], 0.0);
     assert_eq!(middle.iter().map(|mark| mark.particles.clone()).collect::<Vec<_>>(), [[C, A], [C, B]]);
-    let center = Relation::center_of_mass([(A, 1.0), (B, 1.0)], [0.0; 3].map(Schedule::Constant));
+    let center = Relation::center_of_mass([(A, 1.0), (B, 1.0)], [0.0; 3].map(Driven::Constant));
     assert_eq!(drawn([center.into()], 0.0), []);
 }
 
@@ -101,7 +101,7 @@ fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
     let right = std::f64::consts::FRAC_PI_2;
     let angle = Angle::between([A, B], [A, D], right);
     let turned = Angle::from_direction([1.0, 0.0, 0.0], [A, D], right);
-    let area = Area { corners: vec![A, B, C, D], area: Schedule::Constant(9.0) };
+    let area = Area { corners: vec![A, B, C, D], area: Driven::Constant(9.0) };
     let all = drawn([angle.into(), turned.into(), area.into()], 0.0);
     assert_eq!(kinds(&all), ["angle", "angle", "area"]);
     assert_eq!(all[0].particles, [A, B, A, D]);

@@ -27,7 +27,7 @@ mod factor;
 
 use crate::error::BodyError;
 use crate::point::{add, dot, minus, norm, scaled};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use factor::factor;
 
 /// What is thinner than this, relative to its extent squared, is taken as flat. The moments then change by as little, and a

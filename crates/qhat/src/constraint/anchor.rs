@@ -1,11 +1,11 @@
 //! Anchor: what a constraint measures from, a point that may be driven or a particle.
 
+use crate::driven::Driven;
 use crate::number::Number;
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A point or vector whose components may follow t; the third is ignored in two dimensions.
-pub type DrivenPoint = [Schedule; 3];
+pub type DrivenPoint = [Driven; 3];
 
 /// A point, fixed or driven, or a particle.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Anchor {
 
 /// A point that stays.
 pub(super) fn still(point: [f64; 3]) -> DrivenPoint {
-    point.map(Schedule::Constant)
+    point.map(Driven::Constant)
 }
 
 /// p and ṗ.

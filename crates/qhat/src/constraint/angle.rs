@@ -18,10 +18,10 @@
 
 use super::arms::Arms;
 use super::smooth::Smooth;
-use crate::force::finite;
+use crate::allowed::finite;
+use crate::driven::Driven;
 use crate::number::{Number, cross, dot, norm, raised, scaled};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use std::f64::consts::TAU;
 
 /// The angle from one arm to another.
@@ -31,17 +31,17 @@ pub struct Angle {
     arms: Arms,
     /// The first, if it stays.
     direction: [f64; 3],
-    angle: Schedule,
+    angle: Driven,
 }
 
 impl Angle {
     /// The angle α [rad] from the arm `from` to the arm `to`, each from the first of its particles to the second.
-    pub fn between(from: [ParticleId; 2], to: [ParticleId; 2], angle: impl Into<Schedule>) -> Self {
+    pub fn between(from: [ParticleId; 2], to: [ParticleId; 2], angle: impl Into<Driven>) -> Self {
         Angle { arms: Arms::new([from, to]), direction: [0.0; 3], angle: angle.into() }
     }
 
     /// The angle α [rad] from a direction of any length to the arm `to`; its third component is ignored in two dimensions.
-    pub fn from_direction(direction: [f64; 3], to: [ParticleId; 2], angle: impl Into<Schedule>) -> Self {
+    pub fn from_direction(direction: [f64; 3], to: [ParticleId; 2], angle: impl Into<Driven>) -> Self {
         Angle { arms: Arms::new([to]), direction, angle: angle.into() }
     }
 

@@ -10,9 +10,9 @@
 //! Fails where all corners fall into one place: the gradient vanishes. Sides may cross; the sum then counts loops with their sign.
 
 use super::smooth::Smooth;
+use crate::driven::Driven;
 use crate::number::{Number, minus};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A polygon that keeps its area, in the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Area {
     /// Its corners in order, three or more, each particle once.
     pub corners: Vec<ParticleId>,
     /// A [m²], positive where the corners run counterclockwise.
-    pub area: Schedule,
+    pub area: Driven,
 }
 
 impl Smooth for Area {
@@ -29,7 +29,7 @@ impl Smooth for Area {
     }
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
-        super::only_in(2, dimension)
+        crate::allowed::only_in(2, dimension)
     }
 
     fn particle(&self, i: usize) -> Option<ParticleId> {

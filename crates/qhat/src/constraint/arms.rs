@@ -6,7 +6,7 @@
 //! ```
 
 use crate::number::{Number, minus, plus};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// Which particles the arms of a constraint go between.
 #[derive(Clone, Debug, PartialEq)]

@@ -32,14 +32,14 @@ pub struct Curve {
 
 #[derive(Debug, PartialEq)]
 struct Shape {
-    form: Form,
+    form: CurveForm,
     from: f64,
     to: f64,
     samples: Vec<[f64; 3]>,
 }
 
 #[derive(Debug, PartialEq)]
-enum Form {
+enum CurveForm {
     Expressions(Vec<Expression>),
     Spline(Spline),
     Polyline(Polyline),
@@ -73,7 +73,7 @@ impl Curve {
                 "the parameter of a curve must grow from its start to its end, but goes from {from} to {to}"
             ));
         }
-        Curve::new(Form::Expressions(components), from, to)
+        Curve::new(CurveForm::Expressions(components), from, to)
     }
 
     /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. Beyond the ends of an open one it goes on straight.
@@ -83,7 +83,7 @@ impl Curve {
     pub fn through(points: &[[f64; 3]], closed: bool) -> Result<Self, String> {
         let spline = Spline::new(points, closed)?;
         let end = spline.end();
-        Curve::new(Form::Spline(spline), 0.0, end)
+        Curve::new(CurveForm::Spline(spline), 0.0, end)
     }
 
     /// Straight from point to point [m], closed or open, with corners that are arcs of a radius [m]; z = 0 in two dimensions. Its parameter is
@@ -95,10 +95,10 @@ impl Curve {
     pub fn polyline(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, String> {
         let polyline = Polyline::new(points, radius, closed)?;
         let to = polyline.end();
-        Ok(Curve { shape: Arc::new(Shape { form: Form::Polyline(polyline), from: 0.0, to, samples: Vec::new() }) })
+        Ok(Curve { shape: Arc::new(Shape { form: CurveForm::Polyline(polyline), from: 0.0, to, samples: Vec::new() }) })
     }
 
-    fn new(form: Form, from: f64, to: f64) -> Result<Self, String> {
+    fn new(form: CurveForm, from: f64, to: f64) -> Result<Self, String> {
         let mut shape = Shape { form, from, to, samples: Vec::new() };
         shape.samples = (0..=SAMPLES).map(|i| shape.at::<3>(shape.parameter(i)).map(|[c, _, _]| c)).collect();
         if shape.samples.iter().flatten().any(|c| !c.is_finite()) {
@@ -110,7 +110,7 @@ impl Curve {
     /// `Ok` if it can be in d dimensions.
     pub(super) fn fits(&self, dimension: usize) -> Result<(), String> {
         match &self.shape.form {
-            Form::Expressions(components) if components.len() != dimension => {
+            CurveForm::Expressions(components) if components.len() != dimension => {
                 Err(format!("a curve in {dimension} dimensions has {dimension} components, not {}", components.len()))
             }
             _ => Ok(()),
@@ -131,7 +131,7 @@ impl Curve {
     pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {
         let Shape { form, from, to, .. } = &*self.shape;
         match form {
-            Form::Polyline(polyline) => polyline.drawn().into_iter().map(|s| self.point(s)).collect(),
+            CurveForm::Polyline(polyline) => polyline.drawn().into_iter().map(|s| self.point(s)).collect(),
             _ => (0..=pieces).map(|i| self.point(from + (to - from) * i as f64 / pieces as f64)).collect(),
         }
     }
@@ -166,20 +166,20 @@ impl Shape {
     /// c, c' and c" of each component.
     fn at<const D: usize>(&self, s: f64) -> [[f64; 3]; D] {
         match &self.form {
-            Form::Expressions(components) => std::array::from_fn(|k| {
+            CurveForm::Expressions(components) => std::array::from_fn(|k| {
                 components.get(k).map_or([0.0; 3], |component| {
                     let jet = component.jet(&[], &[], s);
                     [jet.value, jet.first, jet.second]
                 })
             }),
-            Form::Spline(spline) => std::array::from_fn(|k| spline.at(k, s)),
-            Form::Polyline(polyline) => polyline.at(s),
+            CurveForm::Spline(spline) => std::array::from_fn(|k| spline.at(k, s)),
+            CurveForm::Polyline(polyline) => polyline.at(s),
         }
     }
 
     /// s*.
     fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
-        if let Form::Polyline(polyline) = &self.form {
+        if let CurveForm::Polyline(polyline) = &self.form {
             return polyline.foot(x);
         }
         let away = |i: usize| {

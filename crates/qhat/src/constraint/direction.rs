@@ -11,7 +11,7 @@ use super::anchor::{DrivenPoint, check_different, check_direction, check_point, 
 use super::moment::moment;
 use super::smooth::Smooth;
 use crate::number::{Number, dot, minus};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// Two particles whose connecting line has a given direction.
 #[derive(Clone, Debug, PartialEq)]

@@ -34,11 +34,12 @@
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
 use super::{Formulation, Holds, RowWriter, Softness};
-use crate::force::{Force, Spring, not_negative};
+use crate::allowed::not_negative;
+use crate::force::{Force, Spring};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Which function of the distance is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -212,6 +213,6 @@ impl Holds for Distance {
         if self.breaks_at.is_some() && self.compliance > 0.0 {
             return Err("a rod with a compliance cannot break: leave out one of the two".into());
         }
-        super::check_strength(self.breaks_at)
+        crate::allowed::check_strength(self.breaks_at)
     }
 }

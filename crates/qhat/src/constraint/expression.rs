@@ -23,8 +23,8 @@ use super::{Formulation, Holds, RowWriter};
 use crate::expression::{Expression, LONGEST_GRADIENT};
 use crate::linalg::block::Block;
 use crate::point::{Motion, Point, norm};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// An expression that stays zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +118,7 @@ impl Holds for ExpressionConstraint {
     }
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
-        super::only_in(self.expression.dimension(), dimension)
+        crate::allowed::only_in(self.expression.dimension(), dimension)
     }
 
     fn particles(&self) -> Vec<ParticleId> {

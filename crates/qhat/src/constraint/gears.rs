@@ -25,10 +25,10 @@
 use super::angle::within_half_a_turn;
 use super::arms::Arms;
 use super::smooth::Smooth;
-use crate::force::finite;
+use crate::allowed::finite;
+use crate::driven::Driven;
 use crate::number::{Number, dot};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// More leave less than a part in a thousand of a turn between two teeth. The sum of two wheels' counts, too.
 const MOST_TEETH: u32 = 1000;
@@ -47,13 +47,13 @@ enum Part {
 pub struct Gears {
     arms: Arms,
     parts: Vec<Part>,
-    angle: Schedule,
+    angle: Driven,
 }
 
 impl Gears {
     /// Two wheels with so many teeth, each an arm from its centre to a point of it, that mesh at α [rad]; one of the numbers is negative where
     /// one wheel lies inside the other, or a belt connects them.
-    pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Schedule>) -> Self {
+    pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Driven>) -> Self {
         let [[c1, _], [c2, _]] = wheels;
         let common = divisor(teeth[0].unsigned_abs(), teeth[1].unsigned_abs()).max(1) as i32;
         let [z1, z2] = teeth.map(|z| z / common);
@@ -64,7 +64,7 @@ impl Gears {
     }
 
     /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: what turns in bearings of the ground.
-    pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Schedule>) -> Self {
+    pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Driven>) -> Self {
         let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
@@ -76,7 +76,7 @@ impl Gears {
         rack: ParticleId,
         along: [f64; 2],
         radius: f64,
-        angle: impl Into<Schedule>,
+        angle: impl Into<Driven>,
     ) -> Self {
         let size = along[0].abs().max(along[1].abs());
         let [x, y] = along.map(|component| component / size);
@@ -108,7 +108,7 @@ impl Smooth for Gears {
     }
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
-        super::only_in(2, dimension)
+        crate::allowed::only_in(2, dimension)
     }
 
     fn particle(&self, i: usize) -> Option<ParticleId> {

@@ -14,28 +14,28 @@
 
 use super::arms::Arms;
 use super::smooth::Smooth;
-use crate::force::finite;
+use crate::allowed::finite;
+use crate::driven::Driven;
 use crate::number::{Number, norm, scaled};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A weighted sum of distances that is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lengths {
     segments: Arms,
     weights: Vec<f64>,
-    total: Schedule,
+    total: Driven,
 }
 
 impl Lengths {
     /// Σ w |d| = L [m] over segments from one particle to another, each with its weight.
-    pub fn new(segments: &[([ParticleId; 2], f64)], total: impl Into<Schedule>) -> Self {
+    pub fn new(segments: &[([ParticleId; 2], f64)], total: impl Into<Driven>) -> Self {
         let (ends, weights): (Vec<_>, Vec<_>) = segments.iter().copied().unzip();
         Lengths { segments: Arms::new(ends), weights, total: total.into() }
     }
 
     /// A rope of length L [m] over points, in order; a point that it passes several times is named as often.
-    pub fn pulley(points: &[ParticleId], total: impl Into<Schedule>) -> Self {
+    pub fn pulley(points: &[ParticleId], total: impl Into<Driven>) -> Self {
         let segments: Vec<_> = points.windows(2).map(|pair| ([pair[0], pair[1]], 1.0)).collect();
         Lengths::new(&segments, total)
     }

@@ -10,11 +10,11 @@
 //! Where it jerks taut, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0: no direction; the first axis is taken.
 
 use super::{ContactRows, Formulation, Holds, RowWriter};
-use crate::force::not_negative;
+use crate::allowed::not_negative;
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, first_axis, minus, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Two particles whose distance stays between two limits: a rope, a strut.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,7 +141,7 @@ impl Holds for Limits {
             }
             _ => {}
         }
-        super::check_restitution(self.restitution)?;
-        super::check_strength(self.breaks_at)
+        crate::allowed::check_restitution(self.restitution)?;
+        crate::allowed::check_strength(self.breaks_at)
     }
 }

@@ -11,7 +11,7 @@
 
 use super::{Constraint, Distance, Limits};
 use crate::point::Motion;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use std::ops::Range;
 
 /// A constraint that acts along the line of two particles, as faces draw and report it: `tension` has one number for each.

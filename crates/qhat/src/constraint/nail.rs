@@ -18,8 +18,8 @@
 use super::{Formulation, Holds, RowWriter};
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, dot, first, minus, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Which function of x − p is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,6 +120,6 @@ impl Holds for Nail {
     }
 
     fn check(&self) -> Result<(), String> {
-        self.at.iter().try_for_each(|&component| crate::force::finite("the point of a nail", component))
+        self.at.iter().try_for_each(|&component| crate::allowed::finite("the point of a nail", component))
     }
 }

@@ -13,9 +13,9 @@ use super::anchor::{Anchor, check_different, check_direction, check_point, still
 use super::on_plane::height;
 use super::on_sphere::{beyond, check_radius};
 use super::smooth::Smooth;
+use crate::driven::Driven;
 use crate::number::{Number, dot, minus};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A particle on a circle in space.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,12 +27,12 @@ pub struct OnCircle {
     /// What the circle is at right angles to, of any length.
     pub axis: [f64; 3],
     /// r [m], positive.
-    pub radius: Schedule,
+    pub radius: Driven,
 }
 
 impl OnCircle {
     /// On a circle of a radius [m] about a centre, across an axis.
-    pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Schedule>) -> Self {
+    pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }
 }

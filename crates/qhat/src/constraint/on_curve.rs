@@ -16,7 +16,7 @@
 use super::curve::{Curve, Foot};
 use super::smooth::Smooth;
 use crate::number::{Number, dot, norm};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A particle on a curve.
 #[derive(Clone, Debug, PartialEq)]

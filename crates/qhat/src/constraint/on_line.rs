@@ -13,7 +13,7 @@ use super::anchor::{DrivenPoint, check_different, check_direction, check_point, 
 use super::moment::moment;
 use super::smooth::Smooth;
 use crate::number::{Number, dot, minus, plus};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// The line that a particle is on.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::smooth::Smooth;
 use crate::number::{Number, cross, dot, minus, norm, plus, scaled};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// The plane that a particle is on.
 #[derive(Clone, Debug, PartialEq)]

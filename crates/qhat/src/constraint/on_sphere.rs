@@ -13,9 +13,9 @@
 
 use super::anchor::{Anchor, check_different};
 use super::smooth::Smooth;
+use crate::driven::Driven;
 use crate::number::{Number, dot, minus, norm, scaled};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A particle at a distance from a point or another particle.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +25,12 @@ pub struct OnSphere {
     /// The centre.
     pub center: Anchor,
     /// r [m], positive.
-    pub radius: Schedule,
+    pub radius: Driven,
 }
 
 impl OnSphere {
     /// At a distance [m] from a centre.
-    pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Schedule>) -> Self {
+    pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
         OnSphere { particle, center: center.into(), radius: radius.into() }
     }
 }
@@ -46,7 +46,7 @@ pub(super) fn beyond<N: Number, const D: usize>(d: [N; D], r: N) -> (N, [N; D]) 
 }
 
 /// `Ok` if a radius is positive at the start.
-pub(super) fn check_radius(radius: &Schedule, what: &str) -> Result<(), String> {
+pub(super) fn check_radius(radius: &Driven, what: &str) -> Result<(), String> {
     radius.check(what)?;
     let value = radius.value(0.0);
     if value > 0.0 { Ok(()) } else { Err(format!("{what} must be positive, but is {value}")) }

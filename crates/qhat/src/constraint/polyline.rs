@@ -38,11 +38,11 @@ struct Piece {
     /// s where it begins.
     start: f64,
     length: f64,
-    form: Form,
+    form: PolylineForm,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Form {
+enum PolylineForm {
     Straight {
         from: [f64; 3],
         along: [f64; 3],
@@ -103,7 +103,7 @@ impl Polyline {
         for (i, (along, length)) in sides.iter().enumerate() {
             let next = (i + 1) % n;
             let from = std::array::from_fn(|k| points[i][k] + taken(i) * along[k]);
-            wire.push((length - taken(i) - taken(next)).max(0.0), Form::Straight { from, along: *along });
+            wire.push((length - taken(i) - taken(next)).max(0.0), PolylineForm::Straight { from, along: *along });
             if let Some(Corner { diff, sum, .. }) = &corners[next] {
                 let (sine, cosine) = (norm(*diff), norm(*sum));
                 let outward = diff.map(|x| x / sine);
@@ -111,13 +111,13 @@ impl Polyline {
                 let center = std::array::from_fn(|k| points[next][k] - away * outward[k]);
                 let half = libm::atan2(sine, cosine);
                 let across = sum.map(|x| x / cosine);
-                wire.push(2.0 * radius * half, Form::Arc { center, radius, outward, across, half });
+                wire.push(2.0 * radius * half, PolylineForm::Arc { center, radius, outward, across, half });
             }
         }
         Ok(wire)
     }
 
-    fn push(&mut self, length: f64, form: Form) {
+    fn push(&mut self, length: f64, form: PolylineForm) {
         self.pieces.push(Piece { start: self.end, length, form });
         self.end += length;
     }
@@ -133,8 +133,8 @@ impl Polyline {
         let piece = &self.pieces[self.pieces.partition_point(|piece| piece.start <= s).saturating_sub(1)];
         let u = s - piece.start;
         match &piece.form {
-            Form::Straight { from, along } => std::array::from_fn(|k| [from[k] + along[k] * u, along[k], 0.0]),
-            Form::Arc { center, radius, outward, across, half } => {
+            PolylineForm::Straight { from, along } => std::array::from_fn(|k| [from[k] + along[k] * u, along[k], 0.0]),
+            PolylineForm::Arc { center, radius, outward, across, half } => {
                 let (sine, cosine) = libm::sincos(u / radius - half);
                 std::array::from_fn(|k| {
                     let out = cosine * outward[k] + sine * across[k];
@@ -163,8 +163,8 @@ impl Polyline {
         let mut all = vec![0.0];
         for Piece { start, length, form } in &self.pieces {
             let cuts = match form {
-                Form::Straight { .. } => 1.0,
-                Form::Arc { half, .. } => (2.0 * half / DRAWN).ceil().max(1.0),
+                PolylineForm::Straight { .. } => 1.0,
+                PolylineForm::Arc { half, .. } => (2.0 * half / DRAWN).ceil().max(1.0),
             };
             all.extend((1..=cuts as usize).map(|i| start + length * (i as f64 / cuts)));
         }
@@ -172,18 +172,18 @@ impl Polyline {
     }
 }
 
-impl Form {
+impl PolylineForm {
     /// u of the foot of x, held between two numbers on a straight piece and within an arc, and |x − c|² there.
     fn foot<const D: usize>(&self, x: Point<D>, low: f64, high: f64) -> (f64, f64) {
         let first = |v: &[f64; 3]| -> Point<D> { std::array::from_fn(|k| v[k]) };
         match self {
-            Form::Straight { from, along } => {
+            PolylineForm::Straight { from, along } => {
                 let (w, along) = (minus(x, first(from)), first(along));
                 let u = dot(w, along).max(low).min(high);
                 let apart: Point<D> = std::array::from_fn(|k| w[k] - u * along[k]);
                 (u, dot(apart, apart))
             }
-            Form::Arc { center, radius, outward, across, half } => {
+            PolylineForm::Arc { center, radius, outward, across, half } => {
                 let (w, o, a) = (minus(x, first(center)), first(outward), first(across));
                 let psi = libm::atan2(dot(w, a), dot(w, o)).max(-half).min(*half);
                 let (sine, cosine) = libm::sincos(psi);
@@ -298,7 +298,7 @@ mod tests {
         let wire = Polyline::new(&BENT, 0.3, false).unwrap();
         let at = |s: f64| wire.at::<3>(s).map(|[c, _, _]| c);
         let drawn = wire.drawn();
-        let straight = wire.pieces.iter().filter(|piece| matches!(piece.form, Form::Straight { .. }));
+        let straight = wire.pieces.iter().filter(|piece| matches!(piece.form, PolylineForm::Straight { .. }));
         for Piece { start, length, .. } in straight {
             assert!(drawn.windows(2).any(|pair| pair[0] == *start && pair[1] == start + length));
         }

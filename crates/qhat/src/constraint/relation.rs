@@ -7,10 +7,10 @@
 //! ```
 
 use super::smooth::Smooth;
-use crate::force::finite;
+use crate::allowed::finite;
+use crate::driven::Driven;
 use crate::number::Number;
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// A weighted sum of places that is held at a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Relation {
     /// The particles with their weights, each particle once.
     pub terms: Vec<(ParticleId, f64)>,
     /// p [m]; the third component is ignored in two dimensions.
-    pub point: [Schedule; 3],
+    pub point: [Driven; 3],
 }
 
 impl Relation {
@@ -33,7 +33,7 @@ impl Relation {
     }
 
     /// The centre of mass of particles with masses m_i [kg] at p(t): w_i = m_i/Σ m.
-    pub fn center_of_mass(masses: impl Into<Vec<(ParticleId, f64)>>, point: [Schedule; 3]) -> Self {
+    pub fn center_of_mass(masses: impl Into<Vec<(ParticleId, f64)>>, point: [Driven; 3]) -> Self {
         let mut terms = masses.into();
         let sum: f64 = terms.iter().map(|(_, mass)| mass).sum();
         terms.iter_mut().for_each(|(_, weight)| *weight /= sum);
@@ -41,13 +41,13 @@ impl Relation {
     }
 
     /// A particle at a point that may be driven: x = p(t).
-    pub fn driven(particle: ParticleId, point: [Schedule; 3]) -> Self {
+    pub fn driven(particle: ParticleId, point: [Driven; 3]) -> Self {
         Relation { terms: vec![(particle, 1.0)], point }
     }
 
     /// Σ w_i x_i = 0.
     pub fn homogeneous(terms: impl Into<Vec<(ParticleId, f64)>>) -> Self {
-        Relation { terms: terms.into(), point: [0.0; 3].map(Schedule::Constant) }
+        Relation { terms: terms.into(), point: [0.0; 3].map(Driven::Constant) }
     }
 }
 

@@ -14,8 +14,8 @@ use super::{Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
 use crate::number::{Dual, Number};
 use crate::point::{Motion, dot};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// A constraint whose rows are smooth functions of positions and time.
 pub(crate) trait Smooth: Clone {

@@ -4,11 +4,11 @@ use super::{
     Anchor, Constraint, Curve, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane,
     Relation, Rows,
 };
+use crate::driven::Driven;
 use crate::expression::{Expression, Purpose, Scope};
 use crate::point::Motion;
-use crate::schedule::Schedule;
+use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
-use crate::system::{Dimension, ParticleId};
 
 const PARTICLES: usize = 4;
 /// A time that is nothing special.
@@ -24,11 +24,11 @@ fn expression(text: &str, purpose: Purpose, d: usize) -> Expression {
         .unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-fn schedule(text: &str) -> Schedule {
+fn schedule(text: &str) -> Driven {
     expression(text, Purpose::Time, 2).into()
 }
 
-fn driven(x: &str, y: &str, z: &str) -> [Schedule; 3] {
+fn driven(x: &str, y: &str, z: &str) -> [Driven; 3] {
     [schedule(x), schedule(y), schedule(z)]
 }
 

@@ -12,9 +12,9 @@
 //! where all corners lie in one line or place: the gradient vanishes.
 
 use super::smooth::Smooth;
+use crate::driven::Driven;
 use crate::number::{Number, cross, dot, minus, plus, raised};
-use crate::schedule::Schedule;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use std::collections::HashSet;
 
 /// A closed surface that keeps its volume, in space.
@@ -26,12 +26,12 @@ pub struct Volume {
     faces: Vec<[usize; 3]>,
     /// The other two corners of the faces at each particle, in their order.
     around: Vec<Vec<[usize; 2]>>,
-    volume: Schedule,
+    volume: Driven,
 }
 
 impl Volume {
     /// A closed surface of triangles around V [m³].
-    pub fn new(triangles: &[[ParticleId; 3]], volume: impl Into<Schedule>) -> Self {
+    pub fn new(triangles: &[[ParticleId; 3]], volume: impl Into<Driven>) -> Self {
         let mut particles: Vec<ParticleId> = triangles.iter().flatten().copied().collect();
         particles.sort_unstable();
         particles.dedup();
@@ -52,7 +52,7 @@ impl Volume {
     }
 
     /// (b − a)·((c − a) × (d − a))/6 = V [m³].
-    pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Schedule>) -> Self {
+    pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Driven>) -> Self {
         Volume::new(&[[a, c, b], [a, b, d], [a, d, c], [b, c, d]], volume)
     }
 }
@@ -63,7 +63,7 @@ impl Smooth for Volume {
     }
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
-        super::only_in(3, dimension)
+        crate::allowed::only_in(3, dimension)
     }
 
     fn particle(&self, i: usize) -> Option<ParticleId> {

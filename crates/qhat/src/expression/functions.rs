@@ -4,7 +4,7 @@ use super::error::ExpressionError;
 use super::lower::{Argument, Lowering, Value, refused};
 use super::operation::Operation::{self, *};
 use super::tape::{Builder, Refusal, Slot};
-use crate::system::Dimension;
+use crate::space::Dimension;
 use std::ops::Range;
 
 /// A function, as messages show it.

@@ -36,7 +36,7 @@ pub use scope::{Purpose, Scope, check_parameter};
 
 use crate::linalg::block::Block;
 use crate::point::Motion;
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use evaluate::{At, with_room};
 use std::fmt;
 use std::sync::Arc;

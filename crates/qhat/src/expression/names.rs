@@ -6,7 +6,7 @@ use super::functions::FUNCTIONS;
 use super::lower::{Lowered, Lowering, Value, refused};
 use super::scope::{CONSTANTS, Purpose};
 use super::tape::Instruction;
-use crate::system::{Dimension, ParticleId};
+use crate::space::{Dimension, ParticleId};
 use std::ops::Range;
 
 impl<'a> Lowering<'a> {

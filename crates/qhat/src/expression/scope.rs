@@ -2,7 +2,7 @@
 
 use super::functions::FUNCTIONS;
 use super::token::is_name;
-use crate::system::{Dimension, ParticleId};
+use crate::space::{Dimension, ParticleId};
 
 /// What an expression is for, which decides what it may depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

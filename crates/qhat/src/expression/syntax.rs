@@ -11,7 +11,7 @@
 //! becomes is counted over the tokens before parsing begins.
 
 use super::error::{ExpressionError, quoted};
-use super::token::{Kind, Token};
+use super::token::{Token, TokenKind};
 use super::{MAX_DEPTH, MAX_NODES};
 use std::ops::Range;
 use winnow::combinator::{Infix, Prefix, cut_err, expression};
@@ -109,22 +109,22 @@ fn check_depth(tokens: &[Token]) -> Result<(), ExpressionError> {
         let top = open.len() - 1;
         let mut opens = true;
         match token.kind {
-            Kind::Symbol('(' | '[') => open.push(0),
-            Kind::Symbol('^') => open[top] += 1,
-            Kind::Symbol('-') if !after_operand => open[top] += 1,
-            Kind::Symbol(')' | ']') if top > 0 => {
+            TokenKind::Symbol('(' | '[') => open.push(0),
+            TokenKind::Symbol('^') => open[top] += 1,
+            TokenKind::Symbol('-') if !after_operand => open[top] += 1,
+            TokenKind::Symbol(')' | ']') if top > 0 => {
                 depth -= 1 + open[top];
                 open.pop();
                 opens = false;
             }
-            Kind::Symbol('+' | '-' | '*' | '/' | ',') => {
+            TokenKind::Symbol('+' | '-' | '*' | '/' | ',') => {
                 depth -= open[top];
                 open[top] = 0;
                 opens = false;
             }
             _ => opens = false,
         }
-        after_operand = matches!(token.kind, Kind::Number(_) | Kind::Name | Kind::Symbol(')' | ']'));
+        after_operand = matches!(token.kind, TokenKind::Number(_) | TokenKind::Name | TokenKind::Symbol(')' | ']'));
         depth += usize::from(opens);
         if depth > MAX_DEPTH {
             let message = format!("brackets, signs and powers are nested more than {MAX_DEPTH} deep");
@@ -141,22 +141,22 @@ fn whole(input: &mut Input<'_>) -> Parsed<Node> {
 /// A number, a name, a call, a bracket or a point.
 fn operand(input: &mut Input<'_>) -> Parsed<Node> {
     let Some(token) = input.input.first() else { return Err(ErrMode::Backtrack(Fault::from_input(input))) };
-    let called = matches!(input.input.get(1), Some(Token { kind: Kind::Symbol('('), .. }));
+    let called = matches!(input.input.get(1), Some(Token { kind: TokenKind::Symbol('('), .. }));
     match token.kind {
-        Kind::Number(value) => {
+        TokenKind::Number(value) => {
             input.next_token();
             push(input, Syntax::Number(value), token.span.clone())
         }
-        Kind::Name if called => {
+        TokenKind::Name if called => {
             input.next_token();
             let (arguments, end) = cut_err(listed(')')).parse_next(input)?;
             push(input, Syntax::Call(token.span.clone(), arguments), token.span.start..end)
         }
-        Kind::Name => {
+        TokenKind::Name => {
             input.next_token();
             push(input, Syntax::Name(token.span.clone()), token.span.clone())
         }
-        Kind::Symbol('(') => {
+        TokenKind::Symbol('(') => {
             input.next_token();
             let node = cut_err(whole).parse_next(input)?;
             let end = close(input, ')', &token.span)?;
@@ -164,11 +164,11 @@ fn operand(input: &mut Input<'_>) -> Parsed<Node> {
             input.state.nodes[node].1 = token.span.start..end;
             Ok(node)
         }
-        Kind::Symbol('[') => {
+        TokenKind::Symbol('[') => {
             let (components, end) = cut_err(listed(']')).parse_next(input)?;
             push(input, Syntax::Point(components), token.span.start..end)
         }
-        Kind::Symbol(_) => Err(ErrMode::Backtrack(Fault::from_input(input))),
+        TokenKind::Symbol(_) => Err(ErrMode::Backtrack(Fault::from_input(input))),
     }
 }
 
@@ -199,7 +199,7 @@ fn close(input: &mut Input<'_>, closing: char, open: &Range<usize>) -> Parsed<us
 }
 
 fn next_is(input: &Input<'_>, symbol: char) -> bool {
-    input.input.first().is_some_and(|token| token.kind == Kind::Symbol(symbol))
+    input.input.first().is_some_and(|token| token.kind == TokenKind::Symbol(symbol))
 }
 
 fn sign<'i>(input: &mut Input<'i>) -> Parsed<Prefix<Input<'i>, Node, ErrMode<Fault>>> {
@@ -218,11 +218,11 @@ fn sign<'i>(input: &mut Input<'i>) -> Parsed<Prefix<Input<'i>, Node, ErrMode<Fau
 
 fn operator<'i>(input: &mut Input<'i>) -> Parsed<Infix<Input<'i>, Node, ErrMode<Fault>>> {
     let infix = match input.input.first().map(|token| token.kind) {
-        Some(Kind::Symbol('+')) => Infix::Left(1, |input, a, b| binary(input, Operator::Plus, a, b)),
-        Some(Kind::Symbol('-')) => Infix::Left(1, |input, a, b| binary(input, Operator::Minus, a, b)),
-        Some(Kind::Symbol('*')) => Infix::Left(2, |input, a, b| binary(input, Operator::Times, a, b)),
-        Some(Kind::Symbol('/')) => Infix::Left(2, |input, a, b| binary(input, Operator::Over, a, b)),
-        Some(Kind::Symbol('^')) => Infix::Right(5, |input, a, b| binary(input, Operator::ToThe, a, b)),
+        Some(TokenKind::Symbol('+')) => Infix::Left(1, |input, a, b| binary(input, Operator::Plus, a, b)),
+        Some(TokenKind::Symbol('-')) => Infix::Left(1, |input, a, b| binary(input, Operator::Minus, a, b)),
+        Some(TokenKind::Symbol('*')) => Infix::Left(2, |input, a, b| binary(input, Operator::Times, a, b)),
+        Some(TokenKind::Symbol('/')) => Infix::Left(2, |input, a, b| binary(input, Operator::Over, a, b)),
+        Some(TokenKind::Symbol('^')) => Infix::Right(5, |input, a, b| binary(input, Operator::ToThe, a, b)),
         _ => return Err(ErrMode::Backtrack(Fault::from_input(input))),
     };
     input.next_token();
@@ -264,8 +264,8 @@ fn no_operand(text: &str, tokens: &[Token], rest: usize) -> ExpressionError {
     };
     let error = ExpressionError::new(token.span.clone(), message);
     match (before.map(|before| before.kind), token.kind) {
-        (Some(Kind::Symbol('*')), Kind::Symbol('*')) => error.with_help("write a power as `a^b`"),
-        (_, Kind::Symbol('+')) => error.with_help("leave the `+` out"),
+        (Some(TokenKind::Symbol('*')), TokenKind::Symbol('*')) => error.with_help("write a power as `a^b`"),
+        (_, TokenKind::Symbol('+')) => error.with_help("leave the `+` out"),
         _ => error.with_help("a number, a name or a bracket must stand here"),
     }
 }
@@ -276,7 +276,7 @@ fn not_closed(text: &str, tokens: &[Token], open: Range<usize>, rest: usize) -> 
     match &tokens[tokens.len() - rest..] {
         [] => ExpressionError::new(open, format!("this `{bracket}` is never closed"))
             .with_help(format!("add a `{closing}`")),
-        [token, ..] if token.kind == Kind::Symbol(',') => ExpressionError::new(
+        [token, ..] if token.kind == TokenKind::Symbol(',') => ExpressionError::new(
             token.span.clone(),
             "a comma separates the arguments of a function or the components of a point",
         )
@@ -291,12 +291,12 @@ fn left_over(text: &str, tokens: &[Token], rest: &[Token]) -> ExpressionError {
     let found = quoted(&text[token.span.clone()]);
     let span = token.span.clone();
     match token.kind {
-        Kind::Symbol(closing @ (')' | ']')) => {
+        TokenKind::Symbol(closing @ (')' | ']')) => {
             let message = format!("this `{closing}` closes nothing that was opened before it");
             ExpressionError::new(span, message)
                 .with_help(format!("leave it out, or open it with a `{}`", if closing == ')' { '(' } else { '[' }))
         }
-        Kind::Symbol(',') => {
+        TokenKind::Symbol(',') => {
             ExpressionError::new(span, "a comma separates the arguments of a function or the components of a point")
                 .with_help("write a number with a point, `1.5`; several expressions are several texts")
         }

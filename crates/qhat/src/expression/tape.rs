@@ -3,7 +3,7 @@
 
 use super::MAX_INSTRUCTIONS;
 use super::operation::Operation::{self, *};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 use std::collections::BTreeMap;
 
 /// The place of an instruction on the tape.

@@ -11,7 +11,7 @@ use winnow::token::{one_of, take_while};
 
 /// What a token is; a name with its text is read from its span.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     Number(f64),
     /// `a` or `a.x`.
     Name,
@@ -22,7 +22,7 @@ pub(super) enum Kind {
 /// A token and where it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Token {
-    pub(super) kind: Kind,
+    pub(super) kind: TokenKind,
     pub(super) span: Range<usize>,
 }
 
@@ -39,10 +39,11 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ExpressionError> {
         let _: Lexed<&str> = take_while(0.., char::is_whitespace).parse_next(&mut input);
         let start = input.current_token_start();
         let Some(next) = text[start..].chars().next() else { return Ok(tokens) };
-        let kind = alt((number, name.value(Kind::Name), one_of(SYMBOLS).map(Kind::Symbol))).parse_next(&mut input);
+        let kind =
+            alt((number, name.value(TokenKind::Name), one_of(SYMBOLS).map(TokenKind::Symbol))).parse_next(&mut input);
         let span = start..input.current_token_start();
         match kind {
-            Ok(Kind::Number(value)) if !value.is_finite() => {
+            Ok(TokenKind::Number(value)) if !value.is_finite() => {
                 return Err(ExpressionError::new(
                     span.clone(),
                     format!("{} is too large for a number", quoted(&text[span])),
@@ -61,10 +62,10 @@ pub(super) fn is_name(text: &str) -> bool {
 }
 
 /// 2, 2.5, .5, 2.5e-3
-fn number(input: &mut Text<'_>) -> Lexed<Kind> {
+fn number(input: &mut Text<'_>) -> Lexed<TokenKind> {
     let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
     let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
-    (mantissa, opt(exponent)).take().parse_to::<f64>().map(Kind::Number).parse_next(input)
+    (mantissa, opt(exponent)).take().parse_to::<f64>().map(TokenKind::Number).parse_next(input)
 }
 
 /// bob, bob.x

@@ -11,10 +11,11 @@
 //! changes the tension of that rod.
 
 use super::line::Line;
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::point::{Motion, add, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Push along the line between two particles, constant and swinging with time.
 #[derive(Clone, Debug, PartialEq)]

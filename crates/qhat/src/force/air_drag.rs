@@ -10,11 +10,12 @@
 //! w₀ is the wind at the origin and G [1/s] its gradient. A ball of radius R in a gas of density ϱ has c₂ = ½ c_w ϱ π R²
 //! (c_w ≈ 0.47). Without relative motion there is no drag, and |u| has no gradient there: uuᵀ/|u| is then zero.
 
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::{finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer, plus};
 use crate::point::{Motion, Point, add, dot, first, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Linear and quadratic drag of one particle in air that may move.
 #[derive(Clone, Debug, PartialEq)]

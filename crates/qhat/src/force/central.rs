@@ -2,10 +2,11 @@
 //! d = x − p. For gravity towards p, s = −μ m with μ = G M [m³/s²].
 
 use super::inverse_square::Law;
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::point::{Motion, Point, add, first, minus};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Inverse-square force between one particle and a point.
 #[derive(Clone, Debug, PartialEq)]

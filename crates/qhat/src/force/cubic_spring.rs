@@ -11,11 +11,12 @@
 //! At |L| = 0 the direction is undefined and it pulls nowhere.
 
 use super::line::Line;
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::{finite, not_negative};
 use crate::linalg::block::outer;
 use crate::point::{Motion, add, minus, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Spring between two particles with a cubic term.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,11 +5,12 @@
 //! power = −kd Σ v_i · v_i        [W]
 //! ```
 
-use super::{Acts, Dependence, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::not_negative;
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Viscous drag on every particle.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,8 +23,8 @@ use super::{Acts, Dependence};
 use crate::expression::{Expression, LONGEST_GRADIENT, MAX_NAMES};
 use crate::linalg::block::{Block, plus, transposed, zero};
 use crate::point::{Motion, Point, add, dot};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// A force on one particle, an expression for each component.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,8 +15,8 @@ use super::pressure::Facet;
 use super::{Acts, Dependence};
 use crate::linalg::block::outer;
 use crate::point::{Motion, Point, add, norm};
+use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
-use crate::system::{Dimension, ParticleId};
 
 /// Particles of one gas, at most: every two of them are coupled.
 const MOST: usize = 200;

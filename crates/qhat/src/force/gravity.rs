@@ -5,10 +5,11 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::point::{Motion, add, dot, first, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Uniform gravity on every particle.
 #[derive(Clone, Debug, PartialEq)]

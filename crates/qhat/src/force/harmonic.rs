@@ -5,10 +5,11 @@
 //! power = F · v                  [W], of either sign: no potential accounts for what it gives
 //! ```
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::point::{Motion, Point, add, dot, first, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Force on one particle that swings with time.
 #[derive(Clone, Debug, PartialEq)]

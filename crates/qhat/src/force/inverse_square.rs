@@ -12,11 +12,12 @@
 //! taken as zero there, and V has no finite value.
 //! The eigenvalues of the stiffness are −s/ρ³ and s (3|d|²/ρ² − 1)/ρ³, neither above 2|s|/ρ³.
 
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::{finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer};
 use crate::point::{Motion, Point, add, dot, minus, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Inverse-square force between two particles: gravity or electrostatics.
 #[derive(Clone, Debug, PartialEq)]

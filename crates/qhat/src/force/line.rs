@@ -6,7 +6,7 @@
 
 use crate::linalg::block::{Block, diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, minus, norm, scaled};
-use crate::system::ParticleId;
+use crate::space::ParticleId;
 
 /// |L| [m], L̇·n [m/s] and n.
 pub(super) struct Line<const D: usize> {

@@ -8,11 +8,12 @@
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::{finite, not_negative};
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, first, minus, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Damped spring between one particle and a point that a hand moves.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,11 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::point::{Motion, add, dot, first};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Constant force on one particle.
 #[derive(Clone, Debug, PartialEq)]

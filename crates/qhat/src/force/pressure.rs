@@ -12,11 +12,12 @@
 //! in N/m in the plane (a pressure times a depth) and in Pa in space. An edge in space acts in the x–y plane; a triangle in
 //! the plane encloses nothing and pushes nowhere.
 
-use super::{Acts, Dependence, finite};
+use super::{Acts, Dependence};
+use crate::allowed::finite;
 use crate::linalg::block::Block;
 use crate::point::{Motion, Point, add, minus, norm};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// A part of what encloses.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,11 +12,12 @@
 //! the spring then pulls nowhere (its force is zero), exact for r = 0.
 
 use super::line::Line;
-use super::{Acts, Dependence, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::not_negative;
 use crate::linalg::block::{diagonal, outer};
 use crate::point::{Motion, add, minus, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 
 /// Damped Hookean spring between two particles.
 #[derive(Clone, Debug, PartialEq)]

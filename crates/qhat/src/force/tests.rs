@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::linalg::block::{diagonal, outer, plus, transposed};
-use crate::system::Dimension;
+use crate::space::Dimension;
 
 /// Numbers in [−1, 1) that look random and are the same everywhere.
 struct Numbers(u64);

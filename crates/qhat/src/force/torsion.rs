@@ -25,11 +25,12 @@
 //! which any n is right; otherwise the force, which is finite beside it, is taken as zero. An arm of no length has no angle:
 //! the force is zero, V that of θ = 0, and beside it the force grows as 1/|u|.
 
-use super::{Acts, Dependence, finite, not_negative};
+use super::{Acts, Dependence};
+use crate::allowed::{finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer, plus, zero};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
+use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
-use crate::system::ParticleId;
 use std::f64::consts::PI;
 
 /// Damped torsion spring at a hinge between two arms.

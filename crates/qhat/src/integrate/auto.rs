@@ -8,7 +8,9 @@
 //! What is lost with BDF2 is energy, and the fast oscillations that h cannot show; rods hold all the same. The report says who
 //! carried the frame.
 
-use super::{Workspace, adaptive, bdf2, dop853, end_of_step, pair};
+use super::Workspace;
+use super::adaptive::{self, dop853, pair};
+use super::implicit::{self, bdf2};
 use crate::error::StepError;
 use crate::report::{StepReport, Warning};
 use crate::settings::{Integrator, Settings};
@@ -29,7 +31,7 @@ pub(super) fn frame<const D: usize>(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     adaptive::check_length(length)?;
-    if !system.switches.is_empty() {
+    if !system.contacts.is_empty() {
         // Nobody else finds events.
         let report = pair::frame::<D>(&dop853::DOP853, system, state, settings, length, workspace)?;
         return Ok(StepReport { integrator: Integrator::Dop853, ..report });
@@ -48,7 +50,7 @@ pub(super) fn frame<const D: usize>(
         state.carry = None;
     }
     let rest = length - (state.t - start);
-    let ending = end_of_step::frame::<D>(&bdf2::BDF2, system, state, settings, rest, workspace)?;
+    let ending = implicit::frame::<D>(&bdf2::BDF2, system, state, settings, rest, workspace)?;
     report.absorb(ending);
     report.warn(Warning::TooStiff { substeps: limit });
     report.integrator = Integrator::Bdf2;
@@ -62,7 +64,7 @@ pub(super) fn frame<const D: usize>(
 
 /// How many substeps the work of a frame allows; 0 where it does not allow any.
 fn most_substeps(system: &System, settings: &Settings) -> usize {
-    let a_row = if system.plan.is_some() { 1 } else { GENERAL };
+    let a_row = if system.chains.is_some() { 1 } else { GENERAL };
     let substep = dop853::DOP853.stages() * a_row * system.row_count().max(1);
     (settings.frame_work / substep).min(settings.max_substeps)
 }

@@ -4,13 +4,17 @@
 //! side, or the user's order filled up with zeros. The method adds and scales them without knowing which.
 
 use super::Workspace;
-use super::projection::{add_impulse, attainable, largest, worst_row};
-use crate::lanes::{F8, LANES, Lanes, Largest, Plan, Projected, vector_unit};
-use crate::measure::{self, Drift};
-use crate::multiplier::Multipliers;
+use super::projection::largest;
+use crate::chains::{Chains, Projected};
+use crate::drift::{Drift, drift};
+use crate::drift::{attainable, worst_row};
+use crate::energy;
+use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
+use crate::multiplier::SolveFor;
 use crate::point::Motion;
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
+use crate::structure::ChainPlan;
 use crate::system::System;
 
 /// Newton's method with the factor of the last stage gains two to four digits an iteration on what is a small correction.
@@ -52,7 +56,7 @@ pub(super) trait Field {
 }
 
 /// Any system, in the user's order, by the general path.
-pub(super) struct Rows<'a, const D: usize> {
+pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) system: &'a System,
     pub(super) workspace: &'a mut Workspace,
     pub(super) feedback: Feedback,
@@ -72,7 +76,7 @@ pub(super) fn unpack(blocks: &[F8], flat: &mut [f64]) {
     }
 }
 
-impl<const D: usize> Field for Rows<'_, D> {
+impl<const D: usize> Field for GeneralField<'_, D> {
     fn blocks(&self) -> usize {
         self.system.coordinate_count().div_ceil(LANES)
     }
@@ -92,14 +96,14 @@ impl<const D: usize> Field for Rows<'_, D> {
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         let motion = Motion::<D> { q: flat_q, qd: flat_qd, t };
-        equation.solve(self.system, motion, &self.feedback, self.is_factored, Multipliers::Force);
+        equation.solve(self.system, motion, &self.feedback, self.is_factored, SolveFor::Force);
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
         let drives = equation.drive_power(self.system, &self.feedback);
         let friction: f64 = equation.friction_power(motion.qd);
         Some(Power {
-            dissipation: measure::dissipation(self.system, motion) + friction,
+            dissipation: energy::dissipation(self.system, motion) + friction,
             stabilization: constraint_power.sum::<f64>() - drives,
             drives,
         })
@@ -116,8 +120,8 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
                 equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
-                equation.solver.solve(matrix, &equation.b.sum, Multipliers::Correction, delta);
-                add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_qd);
+                equation.solver.solve(matrix, &equation.b.sum, SolveFor::Correction, delta);
+                equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_qd);
                 equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
                 pack(flat_q, q);
                 pack(flat_qd, qd);
@@ -127,14 +131,14 @@ impl<const D: usize> Field for Rows<'_, D> {
             if off.is_infinite() {
                 break;
             }
-            equation.solver.solve(matrix, &equation.rows.C, Multipliers::Correction, delta);
-            add_impulse::<D>(&equation.rows.J, &system.inverse_mass, delta, -1.0, flat_q);
+            equation.solver.solve(matrix, &equation.rows.C, SolveFor::Correction, delta);
+            equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
         }
         Projected::NotMet
     }
 
     fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
-        measure::drift::<D>(self.system, &self.workspace.equation, &self.workspace.q)
+        drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.equation.inactive, &self.workspace.q)
     }
 
     fn turn_back(&mut self) {
@@ -146,38 +150,38 @@ impl<const D: usize> Field for Rows<'_, D> {
     }
 }
 
-/// Open chains, in lanes.
-pub(super) struct Chains<'a, const D: usize> {
+/// Open chains, in chains.
+pub(super) struct ChainField<'a, const D: usize> {
     pub(super) system: &'a System,
-    pub(super) plan: &'a Plan,
-    pub(super) lanes: &'a mut Lanes,
+    pub(super) plan: &'a ChainPlan,
+    pub(super) chains: &'a mut Chains,
 }
 
-impl<const D: usize> Field for Chains<'_, D> {
+impl<const D: usize> Field for ChainField<'_, D> {
     fn blocks(&self) -> usize {
         self.plan.blocks() * D
     }
 
     fn begin(&mut self, state: &State, q: &mut [F8], qd: &mut [F8]) {
-        self.lanes.begin::<D>(self.system, self.plan, state, q, qd);
+        self.chains.begin::<D>(self.system, self.plan, state, q, qd);
     }
 
     fn end(&self, q: &[F8], qd: &[F8], state: &mut State) {
-        self.lanes.end::<D>(self.plan, q, qd, state);
+        self.chains.end::<D>(self.plan, q, qd, state);
     }
 
     fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power> {
-        let dissipation = self.lanes.accelerate::<D>(self.system, self.plan, q, qd, t, qdd)?;
+        let dissipation = self.chains.accelerate::<D>(self.system, self.plan, q, qd, t, qdd)?;
         Some(Power { dissipation, ..Power::default() })
     }
 
     fn project(&mut self, q: &mut [F8], qd: &mut [F8], _: f64, settings: &Settings) -> Projected {
         let attainable = attainable(self.system, settings, vector_unit().dispatch(Largest(q)));
-        self.lanes.project::<D>(self.plan, q, qd, attainable)
+        self.chains.project::<D>(self.plan, q, qd, attainable)
     }
 
     fn drift(&self, q: &[F8], qd: &[F8]) -> Drift {
-        self.lanes.drift::<D>(self.plan, q, qd)
+        self.chains.drift::<D>(self.plan, q, qd)
     }
 
     fn turn_back(&mut self) {}

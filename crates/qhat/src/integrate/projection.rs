@@ -9,14 +9,15 @@
 //! where the start is too far away.
 
 use super::Workspace;
-use crate::constraint::Jacobian;
+use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
-use crate::multiplier::{Equation, Multipliers};
-use crate::point::{Motion, add, block, dot, scaled};
+use crate::multiplier::{Equation, SolveFor};
+use crate::point::{Motion, block, dot};
 use crate::report::Projection;
 use crate::settings::Settings;
+use crate::space::ParticleId;
 use crate::state::State;
-use crate::system::{ParticleId, System};
+use crate::system::System;
 
 /// Newton converges quadratically, in some five iterations; from far away it takes more.
 const MAX_ITERATIONS: usize = 60;
@@ -74,13 +75,13 @@ fn positions<const D: usize>(
             return Ok((before, iteration));
         }
         equation.factor::<D>(system, 0.0);
-        equation.solver.solve(&system.matrix, &equation.rows.C, Multipliers::Correction, &mut delta);
+        equation.solver.solve(&system.matrix, &equation.rows.C, SolveFor::Correction, &mut delta);
         let J = equation.rows.J.clone();
         start.copy_from_slice(q);
         let mut fraction = 1.0;
         for _ in 0..MAX_HALVINGS {
             q.copy_from_slice(&start);
-            add_impulse::<D>(&J, &system.inverse_mass, &delta, -fraction, q);
+            J.add_impulse::<D>(&system.inverse_mass, &delta, -fraction, q);
             equation.constrain(system, Motion::<D> { q, qd, t });
             if worst_row(system, &equation.rows.C).1 < off {
                 break;
@@ -109,47 +110,9 @@ fn velocities<const D: usize>(system: &System, t: f64, equation: &mut Equation, 
     if rate * system.extent > CONSISTENT_RATE * fastest {
         equation.factor::<D>(system, 0.0);
         let mut nu = vec![0.0; equation.rows.Cd.len()];
-        equation.solver.solve(&system.matrix, &equation.rows.Cd, Multipliers::Force, &mut nu);
-        add_impulse::<D>(&equation.rows.J, &system.inverse_mass, &nu, -1.0, qd);
+        equation.solver.solve(&system.matrix, &equation.rows.Cd, SolveFor::Force, &mut nu);
+        equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, qd);
     }
-}
-
-/// out += factor W Jᵀ μ.
-pub(super) fn add_impulse<const D: usize>(J: &Jacobian, W: &[f64], mu: &[f64], factor: f64, out: &mut [f64]) {
-    for (row, &multiplier) in mu.iter().enumerate() {
-        for e in J.layout.start[row]..J.layout.start[row + 1] {
-            let particle = J.layout.particle[e];
-            let w = W[particle.0];
-            if w > 0.0 {
-                add(out, particle, scaled(factor * w * multiplier, J.entry::<D>(e)));
-            }
-        }
-    }
-}
-
-/// The rigid row with the largest |C| over its scale, and that number; NaN counts as infinite.
-pub(super) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
-    let mut worst = (0, 0.0);
-    for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
-        if !system.softness[row].is_rigid() {
-            continue;
-        }
-        let relative = residual.abs() / scale;
-        if relative.is_nan() {
-            return (row, f64::INFINITY);
-        }
-        if relative > worst.1 {
-            worst = (row, relative);
-        }
-    }
-    worst
-}
-
-/// Where to stop: half the relative tolerance asked for, so that what is measured afterwards keeps the promise after
-/// rounding; or what the roundoff of the coordinates allows, where that is more. `farthest` is max |q| [m].
-pub(super) fn attainable(system: &System, settings: &Settings, farthest: f64) -> f64 {
-    // A coordinate is rounded by ε|q|; a difference of two of them and its square root add a few more.
-    (0.5 * settings.constraint_tolerance).max(4.0 * f64::EPSILON * farthest / system.extent)
 }
 
 /// max |x|.

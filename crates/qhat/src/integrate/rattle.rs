@@ -16,14 +16,16 @@
 //! Source: Andersen, RATTLE, J. Comput. Phys. 52 (1983); Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
 use super::Workspace;
-use super::adaptive::{self, Attempt, Frame, Method, Outcome};
-use super::control;
-use super::projection::{add_impulse, attainable, largest, worst_row};
+use super::adaptive::control;
+use super::adaptive::{self, Attempt, Frame, Outcome, Stepper};
+use super::projection::largest;
 use super::{dopri5, pair};
 use crate::constraint::Jacobian;
+use crate::drift::{Drift, drift};
+use crate::drift::{attainable, worst_row};
+use crate::energy;
 use crate::error::StepError;
-use crate::measure::{self, Drift};
-use crate::multiplier::Multipliers;
+use crate::multiplier::SolveFor;
 use crate::point::Motion;
 use crate::report::{StepReport, Warning};
 use crate::settings::{Integrator, Settings};
@@ -76,7 +78,7 @@ impl Scratch {
 }
 
 /// The method on its way over one frame.
-struct Run<'a, const D: usize> {
+struct RattleStepper<'a, const D: usize> {
     system: &'a System,
     settings: &'a Settings,
     workspace: &'a mut Workspace,
@@ -98,9 +100,9 @@ pub(super) fn frame<const D: usize>(
     let carry = state.carry.take();
     let lambda = adaptive::begin::<D>(system, state, carry, workspace);
     workspace.factored_at.clear();
-    let mut run = Run::<D> { system, settings, workspace, lambda };
+    let mut run = RattleStepper::<D> { system, settings, workspace, lambda };
     let end = frame.run(&mut run, state);
-    let Run { workspace, lambda, .. } = run;
+    let RattleStepper { workspace, lambda, .. } = run;
     frame.report.factorizations = workspace.equation.solver.factorizations - factorizations;
     frame.report.integrator = Integrator::Rattle;
     match end {
@@ -122,7 +124,7 @@ pub(super) fn frame<const D: usize>(
     }
 }
 
-impl<const D: usize> Method for Run<'_, D> {
+impl<const D: usize> Stepper for RattleStepper<'_, D> {
     fn estimate_order(&self) -> f64 {
         3.0
     }
@@ -134,15 +136,15 @@ impl<const D: usize> Method for Run<'_, D> {
     }
 
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
-        let Run { system, settings, workspace, lambda } = self;
+        let RattleStepper { system, settings, workspace, lambda } = self;
         let Some((error, iterations)) = substep::<D>(system, state, settings, h, end, lambda, workspace) else {
             return Outcome::NotMet;
         };
-        let before = measure::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
-        let after = measure::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
+        let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+        let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
         // μ/h is the impulse where the substep begins, ν where it ends.
         let Workspace { equation, rattle: Scratch { mu, nu, Ct, .. }, .. } = &**workspace;
-        let drives = measure::drive_power(system, Ct, mu) / h + measure::drive_power(system, &equation.rows.Ct, nu);
+        let drives = energy::drive_power(system, Ct, mu) / h + energy::drive_power(system, &equation.rows.Ct, nu);
         Outcome::Met(Attempt { h, error, iterations, dissipation: 0.5 * h * (before + after), drives })
     }
 
@@ -152,7 +154,7 @@ impl<const D: usize> Method for Run<'_, D> {
         }
         std::mem::swap(&mut state.q, &mut self.workspace.q);
         std::mem::swap(&mut state.qd, &mut self.workspace.qd);
-        measure::drift::<D>(self.system, &self.workspace.equation, &state.q)
+        drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.equation.inactive, &state.q)
     }
 
     fn turn_back(&mut self, state: &State) {
@@ -193,7 +195,7 @@ fn substep<const D: usize>(
         qd[k] = state.qd[k] + 0.5 * h * scratch.WQ[k];
         q[k] = state.q[k] + h * qd[k];
     }
-    add_impulse::<D>(&scratch.J, W, &scratch.mu, 1.0, q);
+    scratch.J.add_impulse::<D>(W, &scratch.mu, 1.0, q);
 
     // μ by Newton's method: always one iteration, then until C = 0.
     let mut last = f64::INFINITY;
@@ -209,15 +211,15 @@ fn substep<const D: usize>(
             return None;
         }
         last = off;
-        equation.solver.solve(matrix, &equation.rows.C, Multipliers::Correction, &mut scratch.delta);
+        equation.solver.solve(matrix, &equation.rows.C, SolveFor::Correction, &mut scratch.delta);
         for (mu, delta) in scratch.mu.iter_mut().zip(&scratch.delta) {
             *mu -= delta;
         }
-        add_impulse::<D>(&scratch.J, W, &scratch.delta, -1.0, q);
+        scratch.J.add_impulse::<D>(W, &scratch.delta, -1.0, q);
         iterations += 1;
     }
     scratch.push.fill(0.0);
-    add_impulse::<D>(&scratch.J, W, &scratch.mu, 1.0, &mut scratch.push);
+    scratch.J.add_impulse::<D>(W, &scratch.mu, 1.0, &mut scratch.push);
     for k in 0..qd.len() {
         qd[k] += scratch.push[k] / h;
     }
@@ -236,12 +238,12 @@ fn substep<const D: usize>(
     // ν in one solve, with the factor at q'.
     equation.factor::<D>(system, 0.0);
     equation.rows.rates::<D>(qd, &mut scratch.delta);
-    equation.solver.solve(matrix, &scratch.delta, Multipliers::Force, &mut scratch.nu);
+    equation.solver.solve(matrix, &scratch.delta, SolveFor::Force, &mut scratch.nu);
     for nu in &mut scratch.nu {
         *nu = -*nu;
     }
     scratch.kick.fill(0.0);
-    add_impulse::<D>(&equation.rows.J, W, &scratch.nu, 1.0, &mut scratch.kick);
+    equation.rows.J.add_impulse::<D>(W, &scratch.nu, 1.0, &mut scratch.kick);
     for k in 0..qd.len() {
         qd[k] += scratch.kick[k];
     }

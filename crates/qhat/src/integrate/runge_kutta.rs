@@ -15,9 +15,9 @@
 //! choosing with q' brought onto C = 0 and q̇' onto Ċ = 0 after each. That changes nothing of the order: q' misses C = 0 by
 //! no more than the method's own error.
 
-use super::StepWork;
 use super::field::{Field, Power};
-use crate::lanes::{F8, Largest, V, vector_unit};
+use super::fixed::StepWork;
+use crate::linalg::eight::{F8, Largest, Wide, vector_unit};
 use crate::threads;
 use pulp::{Simd, WithSimd};
 
@@ -255,14 +255,14 @@ impl Combine<'_> {
         let (qd, out_q, out_qd) = (&self.qd[..blocks], &mut self.out_q[..blocks], &mut self.out_qd[..blocks]);
         let hc = self.h * self.weights.c;
         for k in 0..blocks {
-            let v = V::load(simd, &qd[k]);
-            let (mut position, mut velocity) = (hc * v, V::splat(simd, 0.0));
+            let v = Wide::load(simd, &qd[k]);
+            let (mut position, mut velocity) = (hc * v, Wide::splat(simd, 0.0));
             for (slope, in_position, in_velocity) in terms {
-                let slope = V::load(simd, &slope[k]);
+                let slope = Wide::load(simd, &slope[k]);
                 position = position + in_position * slope;
                 velocity = velocity + in_velocity * slope;
             }
-            (V::load(simd, &self.q[k]) + position).store(&mut out_q[k]);
+            (Wide::load(simd, &self.q[k]) + position).store(&mut out_q[k]);
             (v + velocity).store(&mut out_qd[k]);
         }
     }
@@ -291,31 +291,32 @@ impl<F: Field> WithSimd for Squares<'_, F> {
                 count += 1;
             }
         }
-        let mut sums = [V::splat(simd, 0.0); 4];
+        let mut sums = [Wide::splat(simd, 0.0); 4];
         for k in 0..qd.len() {
-            let v = V::load(simd, &qd[k]);
-            let mut e = [fine.c * v, V::splat(simd, 0.0), coarse.c * v, V::splat(simd, 0.0)];
+            let v = Wide::load(simd, &qd[k]);
+            let mut e = [fine.c * v, Wide::splat(simd, 0.0), coarse.c * v, Wide::splat(simd, 0.0)];
             for (slope, weights) in &terms[..count] {
-                let slope = V::load(simd, &slope[k]);
+                let slope = Wide::load(simd, &slope[k]);
                 for (e, weight) in e.iter_mut().zip(weights) {
                     *e = *e + *weight * slope;
                 }
             }
-            let counted = V::load(simd, &field.counted(k));
+            let counted = Wide::load(simd, &field.counted(k));
             for (sum, e) in sums.iter_mut().zip(e) {
                 *sum = *sum + counted * (e * e);
             }
         }
-        sums.map(V::stored).map(F8::sum)
+        sums.map(Wide::stored).map(F8::sum)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{dop853, dopri5, rk4};
+    use super::super::adaptive::{dop853, dopri5};
+    use super::super::fixed::rk4;
     use super::*;
-    use crate::lanes::Projected;
-    use crate::measure::Drift;
+    use crate::chains::Projected;
+    use crate::drift::Drift;
     use crate::settings::Settings;
     use crate::state::State;
 

@@ -12,7 +12,7 @@ use super::block::{
     Block, backward, divide, forward, ldl, load, plus, product_transposed, store, times, transposed, transposed_times,
     vector, zero,
 };
-use super::{Incidence, Plan};
+use super::{EliminationPlan, Incidence};
 
 /// An entry of the lower triangle of the reordered matrix: its column, and the edge its block comes from.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl BlockLdl {
             touching[a].push(shared as u32);
             touching[b].push(shared as u32);
         }
-        let order = Plan::new(&Incidence::new(inside.len(), touching.into_iter())).order;
+        let order = EliminationPlan::new(&Incidence::new(inside.len(), touching.into_iter())).order;
         let mut place = vec![0; n];
         for (k, &i) in order.iter().enumerate() {
             place[i as usize] = k;

@@ -12,7 +12,7 @@
 //! come after the hub. Source: Vanderbei, Symmetric quasidefinite matrices, SIAM J. Optim. 5 (1995).
 
 use super::Incidence;
-use super::plan::{HUB_FROM, Plan};
+use super::plan::{EliminationPlan, HUB_FROM};
 use std::ops::Range;
 
 /// The points that are hubs, and the number of unknowns each then is: the dimension of space.
@@ -91,7 +91,7 @@ impl Hubs {
         let inner = |u: u32| incidence.points_of(u).iter().copied().filter(|&p| self.number(p).is_none());
         let rest = Incidence::new(incidence.points(), unknowns.iter().map(|&u| inner(u)));
         let late = self.late(incidence, unknowns, &rest);
-        let plan = Plan::new(&rest);
+        let plan = EliminationPlan::new(&rest);
         let (mut order, mut last) = (Vec::with_capacity(unknowns.len() + hubs.len()), Vec::new());
         for k in plan.order {
             if late[k as usize] { last.push(k) } else { order.push(k) }

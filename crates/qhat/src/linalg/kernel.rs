@@ -3,21 +3,20 @@
 //! Every number is a sum over k in ascending order, each product rounded before it is added: how many numbers a register holds
 //! changes nothing. `pulp` picks the widest registers of the machine at run time.
 
+use super::eight::{Eight, LANES};
+
 /// Rows of a tile.
-pub(crate) const H: usize = 8;
+pub(crate) const H: usize = LANES;
 
 /// Columns of a tile.
-pub(crate) const V: usize = 4;
-
-/// One column of a block of eight rows.
-pub(crate) type Lanes = [f64; H];
+pub(crate) const COLUMNS: usize = 4;
 
 /// Σ_k l[k] w[k]ᵀ, where of the eight columns of w four are taken, from C on.
 #[inline(always)]
-pub(crate) fn outer<const C: usize>(l: &[Lanes], w: &[Lanes]) -> [Lanes; V] {
-    let mut sum = [[0.0; H]; V];
+pub(crate) fn outer<const C: usize>(l: &[Eight], w: &[Eight]) -> [Eight; COLUMNS] {
+    let mut sum = [[0.0; H]; COLUMNS];
     for (l, w) in l.iter().zip(w) {
-        for j in 0..V {
+        for j in 0..COLUMNS {
             for i in 0..H {
                 sum[j][i] += l[i] * w[C + j];
             }
@@ -28,7 +27,7 @@ pub(crate) fn outer<const C: usize>(l: &[Lanes], w: &[Lanes]) -> [Lanes; V] {
 
 /// Σ_k l[k] x[k].
 #[inline(always)]
-pub(crate) fn rows(l: &[Lanes], x: &[f64]) -> Lanes {
+pub(crate) fn rows(l: &[Eight], x: &[f64]) -> Eight {
     let mut sum = [0.0; H];
     for (l, &x) in l.iter().zip(x) {
         for i in 0..H {
@@ -40,7 +39,7 @@ pub(crate) fn rows(l: &[Lanes], x: &[f64]) -> Lanes {
 
 /// sum[k] += l[k] x lane by lane, for every k.
 #[inline(always)]
-pub(crate) fn columns(l: &[Lanes], x: &Lanes, sum: &mut [Lanes]) {
+pub(crate) fn columns(l: &[Eight], x: &Eight, sum: &mut [Eight]) {
     for (l, sum) in l.iter().zip(sum) {
         *sum = std::array::from_fn(|i| sum[i] + l[i] * x[i]);
     }
@@ -48,24 +47,24 @@ pub(crate) fn columns(l: &[Lanes], x: &Lanes, sum: &mut [Lanes]) {
 
 /// a −= b.
 #[inline(always)]
-pub(crate) fn subtract(a: &mut Lanes, b: &Lanes) {
+pub(crate) fn subtract(a: &mut Eight, b: &Eight) {
     *a = std::array::from_fn(|i| a[i] - b[i]);
 }
 
 /// a − b c.
 #[inline(always)]
-pub(crate) fn minus_scaled(a: &Lanes, b: &Lanes, c: f64) -> Lanes {
+pub(crate) fn minus_scaled(a: &Eight, b: &Eight, c: f64) -> Eight {
     std::array::from_fn(|i| a[i] - b[i] * c)
 }
 
 /// a c.
 #[inline(always)]
-pub(crate) fn scaled(a: &Lanes, c: f64) -> Lanes {
+pub(crate) fn scaled(a: &Eight, c: f64) -> Eight {
     a.map(|a| a * c)
 }
 
 /// The sum over lanes, always in this tree.
 #[inline(always)]
-pub(crate) fn across(x: &Lanes) -> f64 {
+pub(crate) fn across(x: &Eight) -> f64 {
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }

@@ -23,7 +23,7 @@
 //!
 //! A pivot across that is not positive (H need not be definite) is mended: first by taking out the indefinite part of its
 //! edge (`retreat`), then by adding to its diagonal. Both leave the right side alone, so that Newton's method stays right.
-//! Source: Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), extended by geometric stiffness.
+//! Source: Baraff, Linear-Time Dynamics using Lagrange SolveFor (1996), extended by geometric stiffness.
 
 use super::block::{
     Block, accumulate, diagonal, divide, forward, ldl, load, outer, plus, product, store, times, transposed,
@@ -42,7 +42,7 @@ const MENDING: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// One unknown block with the edge to its parent, in the order of elimination.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Link {
+pub(crate) struct ForestEdge {
     /// Its block.
     pub(crate) node: usize,
     /// The block it hangs on, or [`NONE`].
@@ -75,7 +75,7 @@ pub(crate) struct Saddle<'a> {
 /// The factors, one set a link.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LeafToRoot {
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Vec<ForestEdge>,
     /// B and P⁻¹.
     across: Vec<f64>,
     weight: Vec<f64>,
@@ -90,7 +90,7 @@ pub(crate) struct LeafToRoot {
 }
 
 impl LeafToRoot {
-    pub(crate) fn new(links: Vec<Link>, dimension: usize) -> Self {
+    pub(crate) fn new(links: Vec<ForestEdge>, dimension: usize) -> Self {
         let vectors = || vec![0.0; links.len() * dimension];
         let blocks = || vec![0.0; links.len() * dimension * dimension];
         LeafToRoot {

@@ -7,6 +7,7 @@ pub(crate) mod block;
 mod block_ldl;
 mod dense;
 mod dissection;
+pub(crate) mod eight;
 mod elimination;
 mod fronts;
 mod hubs;
@@ -25,9 +26,9 @@ mod tests;
 pub(crate) use block_ldl::BlockLdl;
 pub(crate) use hubs::Hubs;
 pub(crate) use incidence::Incidence;
-pub(crate) use leaf_to_root::{LeafToRoot, Link, NONE, Saddle};
-pub(crate) use plan::Plan;
-pub use plan::{Component, Kind, Method};
+pub(crate) use leaf_to_root::{ForestEdge, LeafToRoot, NONE, Saddle};
+pub(crate) use plan::EliminationPlan;
+pub use plan::{Component, ComponentKind, FactorMethod};
 pub(crate) use rank::rank;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use symmetric::{Lower, Pattern};
@@ -55,7 +56,7 @@ impl Factor {
         if pattern.order() <= DENSE_UP_TO {
             return Factor::Dense(DenseLdl::new(pattern.order()));
         }
-        let plan = Plan::new(&Incidence::of_pattern(pattern));
+        let plan = EliminationPlan::new(&Incidence::of_pattern(pattern));
         let order = plan.order.clone();
         Factor::with(&Arc::new(Symbolic::new(pattern, &plan, Some(order), vec![false; pattern.order()])))
     }
@@ -113,7 +114,7 @@ pub(crate) struct Symbolic {
 }
 
 impl Symbolic {
-    pub(crate) fn new(pattern: &Pattern, plan: &Plan, order: Option<Vec<u32>>, negative: Vec<bool>) -> Self {
+    pub(crate) fn new(pattern: &Pattern, plan: &EliminationPlan, order: Option<Vec<u32>>, negative: Vec<bool>) -> Self {
         let n = pattern.order();
         let a = Lower::new(pattern, order.as_deref());
         let simplicial = SimplicialPlan::new(&a, 0..plan.simplicial);

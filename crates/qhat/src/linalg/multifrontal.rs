@@ -2,8 +2,9 @@
 //!
 //! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM TOMS 9 (1983).
 
+use super::eight::Eight;
 use super::fronts::{Front, FrontPlan};
-use super::kernel::{H, Lanes, V, across, columns, minus_scaled, outer, rows, scaled, subtract};
+use super::kernel::{COLUMNS, H, across, columns, minus_scaled, outer, rows, scaled, subtract};
 use pulp::{Arch, NullaryFnOnce};
 
 /// L D Lᵀ of some rows.
@@ -11,21 +12,21 @@ use pulp::{Arch, NullaryFnOnce};
 pub(crate) struct Multifrontal {
     arch: Arch,
     /// L, front after front.
-    l: Vec<Lanes>,
+    l: Vec<Eight>,
     d: Vec<f64>,
     inverse_d: Vec<f64>,
-    stacks: [Vec<Lanes>; 2],
+    stacks: [Vec<Eight>; 2],
     scratch: Scratch,
 }
 
 #[derive(Clone, Debug)]
 struct Scratch {
     /// D Lᵀ for a block of eight rows.
-    w: Vec<Lanes>,
+    w: Vec<Eight>,
     /// Where the rows of a child are in its parent's L.
     offset: Vec<usize>,
     /// Eight partial sums for each column.
-    sums: Vec<Lanes>,
+    sums: Vec<Eight>,
 }
 
 impl Multifrontal {
@@ -175,7 +176,7 @@ fn take(
 
 /// Eight columns after eight: what is left of them is subtracted, then they are eliminated in all rows.
 #[inline(always)]
-fn factor_columns(l: &mut [Lanes], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Lanes]) -> f64 {
+fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Eight]) -> f64 {
     let k = d.len();
     let mut smallest = f64::INFINITY;
     for begin in (0..k).step_by(H) {
@@ -208,11 +209,11 @@ fn factor_columns(l: &mut [Lanes], negative: &[bool], d: &mut [f64], inverse_d: 
 #[inline(always)]
 fn factor_tiles<const N: usize>(
     k: usize,
-    l: &mut [Lanes],
+    l: &mut [Eight],
     negative: &[bool],
     d: &mut [f64],
     inverse_d: &mut [f64],
-    w: &[Lanes],
+    w: &[Eight],
 ) -> f64 {
     let mut smallest = f64::INFINITY;
     let (mut y, mut inverse) = ([[0.0; H]; N], [0.0; N]);
@@ -222,13 +223,13 @@ fn factor_tiles<const N: usize>(
         let mut own = *tile;
         if !done.is_empty() {
             let first = outer::<0>(done, w);
-            for j in 0..N.min(V) {
+            for j in 0..N.min(COLUMNS) {
                 subtract(&mut own[j], &first[j]);
             }
-            if N > V {
-                let second = outer::<V>(done, w);
-                for j in V..N {
-                    subtract(&mut own[j], &second[j - V]);
+            if N > COLUMNS {
+                let second = outer::<COLUMNS>(done, w);
+                for j in COLUMNS..N {
+                    subtract(&mut own[j], &second[j - COLUMNS]);
                 }
             }
         }
@@ -265,7 +266,7 @@ fn factor_tiles<const N: usize>(
 
 /// w = D Lᵀ for a block of rows.
 #[inline(always)]
-fn scale(l: &[Lanes], d: &[f64], w: &mut [Lanes]) {
+fn scale(l: &[Eight], d: &[f64], w: &mut [Eight]) {
     for ((l, w), &d) in l.iter().zip(w).zip(d) {
         *w = scaled(l, d);
     }
@@ -273,21 +274,21 @@ fn scale(l: &[Lanes], d: &[f64], w: &mut [Lanes]) {
 
 /// The update loses L D Lᵀ of the rows below.
 #[inline(always)]
-fn subtract_update(front: &Front, l: &[Lanes], d: &[f64], update: &mut [Lanes], w: &mut [Lanes]) {
+fn subtract_update(front: &Front, l: &[Eight], d: &[f64], update: &mut [Eight], w: &mut [Eight]) {
     let (k, blocks) = (front.columns, front.row_blocks());
     let below = &l[front.pivot_blocks() * k..];
     let w = &mut w[..k];
     for b in 0..blocks {
         scale(&below[b * k..][..k], d, w);
         let columns = &mut update[b * H * blocks..][..H * blocks];
-        let (first, second) = columns.split_at_mut(V * blocks);
-        let has_second = front.rows.len() > b * H + V;
+        let (first, second) = columns.split_at_mut(COLUMNS * blocks);
+        let has_second = front.rows.len() > b * H + COLUMNS;
         for (block, i) in below[b * k..].chunks_exact(k).zip(b..blocks) {
             for (column, sum) in first.chunks_exact_mut(blocks).zip(&outer::<0>(block, w)) {
                 subtract(&mut column[i], sum);
             }
             if has_second {
-                for (column, sum) in second.chunks_exact_mut(blocks).zip(&outer::<V>(block, w)) {
+                for (column, sum) in second.chunks_exact_mut(blocks).zip(&outer::<COLUMNS>(block, w)) {
                     subtract(&mut column[i], sum);
                 }
             }
@@ -297,7 +298,7 @@ fn subtract_update(front: &Front, l: &[Lanes], d: &[f64], update: &mut [Lanes], 
 
 /// x ← L⁻¹ x, the part of one front.
 #[inline(always)]
-fn forward(plan: &FrontPlan, front: &Front, l: &[Lanes], x: &mut [f64]) {
+fn forward(plan: &FrontPlan, front: &Front, l: &[Eight], x: &mut [f64]) {
     let k = front.columns;
     let (own, later) = x[front.first..].split_at_mut(k);
     let (pivots, below) = l.split_at(front.pivot_blocks() * k);
@@ -326,7 +327,7 @@ fn forward(plan: &FrontPlan, front: &Front, l: &[Lanes], x: &mut [f64]) {
 
 /// x ← L⁻ᵀ x, the part of one front.
 #[inline(always)]
-fn backward(plan: &FrontPlan, front: &Front, l: &[Lanes], x: &mut [f64], sums: &mut [Lanes]) {
+fn backward(plan: &FrontPlan, front: &Front, l: &[Eight], x: &mut [f64], sums: &mut [Eight]) {
     let k = front.columns;
     let (own, later) = x[front.first..].split_at_mut(k);
     let (pivots, below) = l.split_at(front.pivot_blocks() * k);

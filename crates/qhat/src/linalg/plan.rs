@@ -8,7 +8,7 @@ use super::ordering::minimum_degree;
 
 /// How the unknowns of a component hang together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ComponentKind {
     /// One after the other: a chain.
     Path,
     /// No cycle.
@@ -19,7 +19,7 @@ pub enum Kind {
 
 /// How a component is factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum FactorMethod {
     /// The whole matrix as a dense one, in the order given.
     Dense,
     /// Sparse, entry by entry.
@@ -28,24 +28,24 @@ pub enum Method {
     Multifrontal,
 }
 
-impl Kind {
+impl ComponentKind {
     /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Path => "path",
-            Kind::Tree => "tree",
-            Kind::Cyclic => "cyclic",
+            ComponentKind::Path => "path",
+            ComponentKind::Tree => "tree",
+            ComponentKind::Cyclic => "cyclic",
         }
     }
 }
 
-impl Method {
+impl FactorMethod {
     /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Method::Dense => "dense",
-            Method::Simplicial => "simplicial",
-            Method::Multifrontal => "multifrontal",
+            FactorMethod::Dense => "dense",
+            FactorMethod::Simplicial => "simplicial",
+            FactorMethod::Multifrontal => "multifrontal",
         }
     }
 }
@@ -54,13 +54,13 @@ impl Method {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Component {
     /// How it hangs together.
-    pub kind: Kind,
+    pub kind: ComponentKind,
     /// Number of rows of A.
     pub rows: usize,
     /// Points that so many rows touch that they stay in the matrix as unknowns of their own.
     pub hubs: usize,
     /// How it is factored.
-    pub method: Method,
+    pub method: FactorMethod,
     /// Entries of L, its diagonal among them.
     pub entries: u64,
     /// Floating point operations of one factorization.
@@ -81,7 +81,7 @@ const BLOCKED_FROM: u64 = 12;
 
 /// The order of elimination: first what is factored entry by entry, then what is factored in fronts.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Plan {
+pub(crate) struct EliminationPlan {
     pub(crate) order: Vec<u32>,
     /// How many unknowns come before the first front.
     pub(crate) simplicial: usize,
@@ -92,14 +92,14 @@ pub(crate) struct Plan {
     pub(crate) found_from: Vec<u32>,
 }
 
-impl Plan {
+impl EliminationPlan {
     pub(crate) fn new(incidence: &Incidence) -> Self {
-        Plan::with_hubs(incidence, &Hubs::default())
+        EliminationPlan::with_hubs(incidence, &Hubs::default())
     }
 
     /// The plan for the unknowns and those of the hubs, which are numbered after them.
     pub(crate) fn with_hubs(incidence: &Incidence, hubs: &Hubs) -> Self {
-        let mut plan = Plan::default();
+        let mut plan = EliminationPlan::default();
         let mut blocked = Vec::new();
         let extended = (!hubs.is_empty()).then(|| hubs.extended(incidence));
         let points = extended.as_ref().map_or(incidence.points(), Incidence::points);
@@ -120,17 +120,17 @@ impl Plan {
                 _ => order(&incidence.part(&unknowns, &mut scratch), kind),
             };
             let method = if elimination.factor_flops() >= BLOCKED_FROM * elimination.entries() {
-                Method::Multifrontal
+                FactorMethod::Multifrontal
             } else {
-                Method::Simplicial
+                FactorMethod::Simplicial
             };
             let (again, widths) = match method {
-                Method::Multifrontal => elimination.fronts(),
+                FactorMethod::Multifrontal => elimination.fronts(),
                 _ => (elimination.postorder(), Vec::new()),
             };
             let order = again.iter().map(|&k| unknowns[order[k as usize] as usize]);
             match method {
-                Method::Multifrontal => blocked.extend(order),
+                FactorMethod::Multifrontal => blocked.extend(order),
                 _ => plan.order.extend(order),
             }
             plan.widths.extend(widths);
@@ -156,7 +156,7 @@ impl Component {
     pub(crate) fn dense(self) -> Self {
         let n = self.rows as u64;
         Component {
-            method: Method::Dense,
+            method: FactorMethod::Dense,
             hubs: 0,
             entries: n * (n + 1) / 2,
             factor_flops: n * n * n / 3,
@@ -168,22 +168,22 @@ impl Component {
 }
 
 /// Numbers and indices of L; fronts hold zeros and, for a while, what they hand on: about twice the largest.
-fn memory(method: Method, elimination: &Elimination) -> u64 {
+fn memory(method: FactorMethod, elimination: &Elimination) -> u64 {
     let largest = u64::from(elimination.below.iter().copied().max().unwrap_or(0));
     match method {
-        Method::Multifrontal => 16 * elimination.entries() + 16 * largest * largest,
+        FactorMethod::Multifrontal => 16 * elimination.entries() + 16 * largest * largest,
         _ => 20 * elimination.entries(),
     }
 }
 
 /// An order of elimination with little fill, and what it leads to.
-fn order(part: &Incidence, kind: Kind) -> (Vec<u32>, Elimination) {
+fn order(part: &Incidence, kind: ComponentKind) -> (Vec<u32>, Elimination) {
     let n = part.unknowns();
     let analysed = |order: Vec<u32>| {
         let elimination = Elimination::new(&part.permuted(&order));
         (order, elimination)
     };
-    if kind != Kind::Cyclic {
+    if kind != ComponentKind::Cyclic {
         return analysed(leaves_first(part));
     }
     let dissected = analysed(nested_dissection(part));
@@ -195,7 +195,7 @@ fn order(part: &Incidence, kind: Kind) -> (Vec<u32>, Elimination) {
 }
 
 /// The connected components, each with its unknowns; in a path or a tree the last is at an end.
-pub(crate) fn components(incidence: &Incidence) -> Vec<(Kind, Vec<u32>)> {
+pub(crate) fn components(incidence: &Incidence) -> Vec<(ComponentKind, Vec<u32>)> {
     let mut components = Vec::new();
     let mut seen = vec![false; incidence.unknowns()];
     let mut seen_point = vec![false; incidence.points()];
@@ -226,9 +226,9 @@ pub(crate) fn components(incidence: &Incidence) -> Vec<(Kind, Vec<u32>)> {
             next += 1;
         }
         let kind = match (unknowns.len() + points == touches + 1 || points == 0, crowded) {
-            (false, _) => Kind::Cyclic,
-            (true, true) => Kind::Tree,
-            (true, false) => Kind::Path,
+            (false, _) => ComponentKind::Cyclic,
+            (true, true) => ComponentKind::Tree,
+            (true, false) => ComponentKind::Path,
         };
         components.push((kind, unknowns));
     }

@@ -3,7 +3,10 @@
 use super::bisection::{Graph, bisect};
 use super::dissection::nested_dissection;
 use super::elimination::Elimination;
-use super::{DenseLdl, Factor, Incidence, Kind, Pattern, Plan, SparseLdl, Symbolic, SymmetricMatrix, ordering, rank};
+use super::{
+    ComponentKind, DenseLdl, EliminationPlan, Factor, Incidence, Pattern, SparseLdl, Symbolic, SymmetricMatrix,
+    ordering, rank,
+};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
@@ -90,7 +93,7 @@ fn fill(pattern: &Pattern, order: &[usize]) -> usize {
 }
 
 fn sparse(pattern: &Pattern) -> SparseLdl {
-    let plan = Plan::new(&Incidence::of_pattern(pattern));
+    let plan = EliminationPlan::new(&Incidence::of_pattern(pattern));
     SparseLdl::new(Symbolic::new(pattern, &plan, Some(plan.order.clone()), vec![false; pattern.order()]).into())
 }
 
@@ -139,7 +142,7 @@ proptest! {
     #[test]
     fn entries_are_foretold((pattern, _) in any_matrix()) {
         let incidence = Incidence::of_pattern(&pattern);
-        let plan = Plan::new(&incidence);
+        let plan = EliminationPlan::new(&incidence);
         let order: Vec<usize> = plan.order.iter().map(|&i| i as usize).collect();
         let (_, degrees) = eliminate(&pattern, &order);
         let elimination = Elimination::new(&incidence.permuted(&plan.order));
@@ -155,10 +158,10 @@ proptest! {
         let incidence = Incidence::of_pattern(&pattern);
         let (order, widths) = Elimination::new(&incidence).fronts();
         let n = pattern.order();
-        let blocked = Plan { order: order.clone(), simplicial: 0, widths, ..Plan::default() };
-        let single = Plan { order, simplicial: n, ..Plan::default() };
+        let blocked = EliminationPlan { order: order.clone(), simplicial: 0, widths, ..EliminationPlan::default() };
+        let single = EliminationPlan { order, simplicial: n, ..EliminationPlan::default() };
         let b = right_side(n);
-        let solve = |plan: &Plan| {
+        let solve = |plan: &EliminationPlan| {
             let mut ldl = SparseLdl::new(Symbolic::new(&pattern, plan, Some(plan.order.clone()), vec![false; pattern.order()]).into());
             let pivot = ldl.factor(&values, shift);
             let mut x = b.clone();
@@ -294,9 +297,13 @@ fn shuffled_nets_are_cut_as_well() {
 fn components_are_told_apart() {
     // A path of three, a star with an anchor, a triangle, and an unknown that touches nothing.
     let lists: [&[u32]; 11] = [&[0, 1], &[1, 2], &[2], &[3, 4], &[3, 5], &[3, 6], &[4], &[7, 8], &[8, 9], &[9, 7], &[]];
-    let plan = Plan::new(&Incidence::new(10, lists.iter().map(|list| list.iter().copied())));
-    let found: Vec<(Kind, usize)> = plan.components.iter().map(|component| (component.kind, component.rows)).collect();
-    assert_eq!(found, [(Kind::Path, 3), (Kind::Tree, 4), (Kind::Cyclic, 3), (Kind::Path, 1)]);
+    let plan = EliminationPlan::new(&Incidence::new(10, lists.iter().map(|list| list.iter().copied())));
+    let found: Vec<(ComponentKind, usize)> =
+        plan.components.iter().map(|component| (component.kind, component.rows)).collect();
+    assert_eq!(
+        found,
+        [(ComponentKind::Path, 3), (ComponentKind::Tree, 4), (ComponentKind::Cyclic, 3), (ComponentKind::Path, 1)]
+    );
     let entries: Vec<u64> = plan.components.iter().map(|component| component.entries).collect();
     assert_eq!(entries, [5, 8, 6, 1], "no fill in the first two, and a full triangle");
 }

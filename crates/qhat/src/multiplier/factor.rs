@@ -13,8 +13,8 @@
 //! λ = S x is then the least-norm solution in the scaled rows; the constraint force Jᵀλ is unique in any case. |null(b)| tells
 //! how far the rows contradict each other. A step that only wants the force leaves both null(·) out.
 
-use super::MatrixStructure;
 use crate::linalg::{Factor, rank};
+use crate::structure::MatrixStructure;
 
 /// A pivot of the scaled matrix below this is taken for zero. Pivots of regular systems are about the smallest ratio of
 /// inverse masses (1e-9 for a load of a billion beads); roundoff leaves some 1e-15 of a zero.
@@ -34,11 +34,11 @@ const ACCEPTED_RESIDUAL: f64 = 1e-6;
 
 /// Where refinement has arrived, by what is wanted: a few times roundoff; what leaves q̈ ten digits in the worst structures; and
 /// what makes the next correction a thousand times smaller.
-const fn refined(wanted: Multipliers) -> f64 {
+const fn refined(wanted: SolveFor) -> f64 {
     match wanted {
-        Multipliers::Least => 1e-14,
-        Multipliers::Force => 1e-12,
-        Multipliers::Correction => 1e-3,
+        SolveFor::LeastNorm => 1e-14,
+        SolveFor::Force => 1e-12,
+        SolveFor::Correction => 1e-3,
     }
 }
 
@@ -54,9 +54,9 @@ const CONTRADICTION: f64 = 1e-8;
 
 /// Which of the λ that do the same a solution is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Multipliers {
+pub(crate) enum SolveFor {
     /// The least, for people to look at.
-    Least,
+    LeastNorm,
     /// Any that makes the force.
     Force,
     /// Any that nearly makes it: a correction that is looked at afterwards, and made again if need be.
@@ -110,8 +110,8 @@ impl MultiplierSolver {
     }
 
     /// Factors A + ε I. Rows without any gradient (a zero on the diagonal) and those that are off are left out: their λ is
-    /// zero. `is_off` may be empty.
-    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64, is_off: &[bool]) {
+    /// zero. `inactive` may be empty.
+    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64, inactive: &[bool]) {
         let pattern = &matrix.pattern;
         // diag(A + ε I), to which hubs add their part.
         for i in 0..self.r.len() {
@@ -127,8 +127,8 @@ impl MultiplierSolver {
                 continue;
             }
             let diagonal = self.r[i];
-            let is_off = is_off.get(row as usize).is_some_and(|is_off| *is_off);
-            let takes_part = !matrix.inert[row as usize] && !is_off && diagonal > 0.0;
+            let inactive = inactive.get(row as usize).is_some_and(|inactive| *inactive);
+            let takes_part = !matrix.inert[row as usize] && !inactive && diagonal > 0.0;
             self.scale[i] = if takes_part { 1.0 / diagonal.sqrt() } else { 0.0 };
             self.dropped += usize::from(!takes_part);
         }
@@ -180,7 +180,7 @@ impl MultiplierSolver {
     }
 
     /// λ ← (A + ε I)⁻¹ b, or a λ that comes nearest where the matrix is singular.
-    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], wanted: Multipliers, lambda: &mut [f64]) {
+    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], wanted: SolveFor, lambda: &mut [f64]) {
         for (i, &row) in matrix.order.iter().enumerate() {
             self.b[i] = if matrix.is_hub(row) { 0.0 } else { self.scale[i] * b[row as usize] };
         }
@@ -189,8 +189,8 @@ impl MultiplierSolver {
             self.regularize(matrix);
         }
         if self.deficient {
-            let is_met = wanted != Multipliers::Least && self.refine(matrix, wanted);
-            if !is_met && wanted != Multipliers::Correction {
+            let is_met = wanted != SolveFor::LeastNorm && self.refine(matrix, wanted);
+            if !is_met && wanted != SolveFor::Correction {
                 self.solve_least(matrix);
             }
         }
@@ -222,7 +222,7 @@ impl MultiplierSolver {
             self.b[i] -= self.y[i];
         }
         self.contradiction = if size > 0.0 { largest(&self.y) / size } else { 0.0 };
-        self.refine(matrix, Multipliers::Least);
+        self.refine(matrix, SolveFor::LeastNorm);
         self.y.copy_from_slice(&self.x);
         self.clear_hubs(matrix);
         self.keep_null_space(matrix, largest(&self.y));
@@ -232,7 +232,7 @@ impl MultiplierSolver {
     }
 
     /// x ← x + G (b − M x) from 0; whether b was met but for roundoff.
-    fn refine(&mut self, matrix: &MatrixStructure, wanted: Multipliers) -> bool {
+    fn refine(&mut self, matrix: &MatrixStructure, wanted: SolveFor) -> bool {
         let size = largest(&self.b);
         self.x.fill(0.0);
         self.r.copy_from_slice(&self.b);

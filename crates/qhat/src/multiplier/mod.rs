@@ -12,16 +12,15 @@ mod rhs;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use factor::{MultiplierSolver, Multipliers};
-pub(crate) use matrix::{MatrixPlan, MatrixStructure};
+pub(crate) use factor::{MultiplierSolver, SolveFor};
 pub(crate) use rhs::RightHandSide;
 
 use crate::constraint::Rows;
-use crate::measure;
+use crate::energy;
+use crate::modes::{Mode, Modes};
 use crate::point::Motion;
 use crate::report::Warning;
 use crate::settings::Feedback;
-use crate::switching::{Mode, Modes};
 use crate::system::System;
 use friction::Sliding;
 pub(crate) use friction::{Beginning, Friction};
@@ -39,9 +38,9 @@ pub(crate) struct Equation {
     pub(crate) lambda: Vec<f64>,
     pub(crate) Q_hat: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
-    /// For each row whether it takes no part; empty where nothing switches.
-    pub(crate) is_off: Vec<bool>,
-    /// C and Ċ of every row, where those that take no part are zero in `rows`; empty where nothing switches.
+    /// For each row whether it takes no part; empty where nothing contacts.
+    pub(crate) inactive: Vec<bool>,
+    /// C and Ċ of every row, where those that take no part are zero in `rows`; empty where nothing contacts.
     pub(crate) gaps: Gaps,
     pub(crate) friction: Friction,
     /// W (Jᵀλ + F), of the last λ that was asked for: d·n numbers; empty until then.
@@ -68,7 +67,7 @@ impl Equation {
             lambda: vec![0.0; m],
             Q_hat: vec![0.0; coordinates],
             qdd: vec![0.0; coordinates],
-            is_off: vec![false; if system.switches.is_empty() { 0 } else { m }],
+            inactive: vec![false; if system.contacts.is_empty() { 0 } else { m }],
             gaps: Gaps::default(),
             friction: Friction::default(),
             push: Vec::new(),
@@ -83,7 +82,7 @@ impl Equation {
         motion: Motion<'_, D>,
         feedback: &Feedback,
         is_factored: bool,
-        wanted: Multipliers,
+        wanted: SolveFor,
     ) {
         self.apply_forces(system, motion);
         self.constrain(system, motion);
@@ -105,7 +104,7 @@ impl Equation {
     }
 
     /// λ for the right side at hand, friction of what slides included; where that has no answer λ is not a number.
-    pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System, wanted: Multipliers) {
+    pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System, wanted: SolveFor) {
         let Equation { friction, rows, b, lambda, solver, .. } = self;
         solver.solve(&system.matrix, &b.sum, wanted, lambda);
         let count = friction.sliding.len();
@@ -144,9 +143,9 @@ impl Equation {
 
     /// Which rows take part from now on. Nothing is factored for them yet.
     pub(crate) fn set_modes(&mut self, system: &System, modes: &Modes) {
-        modes.write_off(&system.switches, &mut self.is_off);
+        modes.write_inactive(&system.contacts, &mut self.inactive);
         self.friction.sliding.clear();
-        for (contact, mode) in system.switches.contacts.iter().zip(&modes.contacts) {
+        for (contact, mode) in system.contacts.list.iter().zip(&modes.contacts) {
             if let Mode::Sliding(direction) = *mode {
                 let (normal, tangents, friction) = (contact.normal, contact.tangents.clone(), contact.friction);
                 self.friction.sliding.push(Sliding {
@@ -163,7 +162,7 @@ impl Equation {
 
     /// Power of the drives, of Q̂ as it was solved last [W].
     pub(crate) fn drive_power(&self, system: &System, feedback: &Feedback) -> f64 {
-        (1.0 - feedback.elasticity) * measure::drive_power(system, &self.rows.Ct, &self.lambda)
+        (1.0 - feedback.elasticity) * energy::drive_power(system, &self.rows.Ct, &self.lambda)
     }
 
     /// Power of the friction of what slides, of λ as it was solved last [W].
@@ -187,7 +186,7 @@ impl Equation {
     /// C, Ċ, J and γ, with zeros where a row takes no part.
     pub(crate) fn constrain<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
         self.constrain_all(system, motion);
-        if self.is_off.is_empty() {
+        if self.inactive.is_empty() {
             return;
         }
         if !self.friction.is_empty() {
@@ -195,25 +194,25 @@ impl Equation {
         }
         self.gaps.C.clone_from(&self.rows.C);
         self.gaps.Cd.clone_from(&self.rows.Cd);
-        for row in (0..self.is_off.len()).filter(|&row| self.is_off[row]) {
+        for row in (0..self.inactive.len()).filter(|&row| self.inactive[row]) {
             (self.rows.C[row], self.rows.Cd[row], self.rows.gamma[row]) = (0.0, 0.0, 0.0);
         }
     }
 
     /// C, Ċ, J and γ of every row, whether it takes part or not.
     pub(crate) fn constrain_all<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
-        self.rows.evaluate(system.constraints.iter().map(|named| &named.constraint), motion);
+        system.evaluate_rows(motion, &mut self.rows);
     }
 
     /// A = J W Jᵀ and the factor of A + ε I.
     pub(crate) fn factor<const D: usize>(&mut self, system: &System, epsilon: f64) {
         system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-        self.solver.factor(&system.matrix, &self.A, epsilon, &self.is_off);
+        self.solver.factor(&system.matrix, &self.A, epsilon, &self.inactive);
     }
 
     /// Whether a row takes no part now.
-    pub(crate) fn is_off(&self, row: usize) -> bool {
-        self.is_off.get(row).is_some_and(|is_off| *is_off)
+    pub(crate) fn is_inactive(&self, row: usize) -> bool {
+        self.inactive.get(row).is_some_and(|inactive| *inactive)
     }
 
     /// What a user should know of the last factorization.
@@ -223,7 +222,7 @@ impl Equation {
             .solver
             .left_out(&system.matrix)
             .into_iter()
-            .filter(|&row| !system.matrix.inert[row] && !self.is_off(row));
+            .filter(|&row| !system.matrix.inert[row] && !self.is_inactive(row));
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });

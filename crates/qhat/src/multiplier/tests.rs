@@ -1,7 +1,7 @@
 //! The multiplier solve on systems of known shape, timed beside its residual:
 //! `cargo test --release --package qhat --lib -- --ignored --nocapture timed`.
 
-use super::{Equation, Multipliers};
+use super::{Equation, SolveFor};
 use crate::point::Motion;
 use crate::{Dimension, Distance, Gravity, Particle, ParticleId, State, System, SystemBuilder};
 use std::time::Instant;
@@ -14,7 +14,7 @@ fn plane() -> SystemBuilder {
 
 fn add(builder: &mut SystemBuilder, x: [f64; 2], fixed: bool) -> ParticleId {
     let particle = Particle::at(format!("{} {}", x[0], x[1]), x).with_mass(0.01);
-    builder.particle(if fixed { particle.held() } else { particle })
+    builder.particle(if fixed { particle.fixed() } else { particle })
 }
 
 fn rod(builder: &mut SystemBuilder, a: ParticleId, b: ParticleId, length: f64) {
@@ -118,7 +118,7 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
         equation.factor::<2>(&system, 0.0);
         factor = factor.min(clock.elapsed().as_secs_f64());
         let clock = Instant::now();
-        equation.solver.solve(&system.matrix, &b, Multipliers::Least, &mut lambda);
+        equation.solver.solve(&system.matrix, &b, SolveFor::LeastNorm, &mut lambda);
         solve = solve.min(clock.elapsed().as_secs_f64());
         if turn >= 4 && start.elapsed().as_secs_f64() > 0.5 {
             break;
@@ -172,7 +172,7 @@ fn a_hub_is_not_mistaken_for_a_redundancy() {
         let mut builder = System::builder(Dimension::Three);
         let at = |x: f64, y: f64, z: f64| Particle::at(format!("{x} {y} {z}"), [x, y, z]);
         let hub = builder.particle(at(0.0, 0.0, 0.0));
-        let anchors = [[-1.0, 5.0, 0.0], [1.0, 5.0, 0.0]].map(|x| builder.particle(at(x[0], x[1], x[2]).held()));
+        let anchors = [[-1.0, 5.0, 0.0], [1.0, 5.0, 0.0]].map(|x| builder.particle(at(x[0], x[1], x[2]).fixed()));
         for i in 0..40 {
             let (angle, z) = (0.3 * f64::from(i), if i == 0 { 0.0 } else { 1.0 });
             let tip = builder.particle(at(libm::cos(angle), libm::sin(angle), z));

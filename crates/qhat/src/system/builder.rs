@@ -1,14 +1,16 @@
 //! What a System is made from, and the checks that it is one.
 
-use super::{Dimension, Particle, ParticleId, System, in_dimension};
-use crate::constraint::{Constraint, Holds, Layout};
+use super::{Particle, System};
+use crate::constraint::Layout;
+use crate::constraint::{Constraint, Holds};
 use crate::error::BuildError;
 use crate::force::{Acts, Force};
-use crate::multiplier::MatrixStructure;
+use crate::modes::Modes;
 use crate::point::{block, minus, norm};
 use crate::settings::Feedback;
+use crate::space::{Dimension, ParticleId, in_dimension};
 use crate::state::State;
-use crate::switching::{Modes, Switches};
+use crate::structure::{Contacts, MatrixStructure};
 use std::collections::HashSet;
 
 /// A factor that would take more is refused [bytes]: 16 GiB, above what computers that show such scenes have to spare.
@@ -96,12 +98,12 @@ impl SystemBuilder {
             softness: Vec::new(),
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
-            plan: None,
+            chains: None,
             forces: self.forces,
             compliant: Vec::new(),
             feedback: self.feedback,
             extent,
-            switches: Switches::default(),
+            contacts: Contacts::default(),
         };
         system.set_constraints(self.constraints);
         let plan = system.plan_matrix();
@@ -109,7 +111,7 @@ impl SystemBuilder {
             return Err(BuildError::TooLarge { memory: plan.memory(), limit: MEMORY_LIMIT });
         }
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, plan);
-        let state = State { modes: Modes::at_first(&system.switches), ..State::new(q, qd) };
+        let state = State { modes: Modes::at_first(&system.contacts), ..State::new(q, qd) };
         Ok((system, state))
     }
 

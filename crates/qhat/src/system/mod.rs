@@ -5,64 +5,17 @@ mod builder;
 mod particle;
 
 pub use builder::SystemBuilder;
-pub use particle::{Particle, ParticleId};
+pub use particle::Particle;
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, Rows, Softness};
+use crate::constraint::Layout;
+use crate::constraint::{Constraint, Formulation, Holds, Link, NamedConstraint, Rows, Softness};
 use crate::force::{Acts, Force};
-use crate::lanes::Plan;
 use crate::linalg::Component;
-use crate::multiplier::{MatrixPlan, MatrixStructure};
 use crate::point::Motion;
 use crate::settings::Feedback;
+use crate::space::{Dimension, ParticleId};
 use crate::state::State;
-use crate::switching::Switches;
-
-/// Number of space dimensions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// The plane.
-    Two,
-    /// Space.
-    Three,
-}
-
-impl Dimension {
-    /// d as a number.
-    pub fn number(self) -> usize {
-        match self {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        }
-    }
-}
-
-/// Runs a generic body with `$D` bound to the number of dimensions: the one place where d becomes a constant.
-macro_rules! in_dimension {
-    ($dimension:expr, $D:ident => $body:expr) => {
-        match $dimension {
-            $crate::system::Dimension::Two => {
-                const $D: usize = 2;
-                $body
-            }
-            $crate::system::Dimension::Three => {
-                const $D: usize = 3;
-                $body
-            }
-        }
-    };
-}
-pub(crate) use in_dimension;
-
-/// A constraint with its name and its place among the rows.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedConstraint {
-    /// Its name, for reports.
-    pub name: String,
-    /// The constraint.
-    pub constraint: Constraint,
-    /// Its first row in C, λ and J.
-    pub first_row: usize,
-}
+use crate::structure::{ChainPlan, Contacts, MatrixPlan, MatrixStructure};
 
 /// Particles, constraints and forces; see [`System::builder`].
 #[derive(Clone, Debug)]
@@ -77,15 +30,15 @@ pub struct System {
     pub(crate) softness: Vec<Softness>,
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
-    /// Where its chains lie in lanes, if it has nothing else.
-    pub(crate) plan: Option<Plan>,
+    /// Its open chains, if it has nothing else.
+    pub(crate) chains: Option<ChainPlan>,
     pub(crate) forces: Vec<Force>,
     /// Constraints that give way, as forces.
     pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
     /// Its contacts, and what may break.
-    pub(crate) switches: Switches,
+    pub(crate) contacts: Contacts,
 }
 
 impl System {
@@ -159,7 +112,7 @@ impl System {
 
     /// Which links are broken, by their places among [`System::links`].
     pub fn broken_links(&self, state: &State) -> Vec<usize> {
-        let breakables = self.switches.breakables.iter().zip(&state.modes.broken);
+        let breakables = self.contacts.breakables.iter().zip(&state.modes.broken);
         let broken: Vec<usize> =
             breakables.filter(|&(_, &broken)| broken).map(|(breakable, _)| breakable.rows.start).collect();
         let links = self.links().enumerate();
@@ -169,13 +122,13 @@ impl System {
     /// The parts of A = J W Jᵀ that are coupled with no other: how each hangs together, how it is factored and what that costs.
     ///
     /// ```
-    /// use qhat::{Dimension, Distance, Kind, Method, Particle, System};
+    /// use qhat::{ComponentKind, Dimension, Distance, FactorMethod, Particle, System};
     /// let mut builder = System::builder(Dimension::Two);
     /// let ends = [0.0, 1.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0])));
     /// builder.constraint("left", Distance::new(ends[0], ends[1], 1.0)).constraint("right", Distance::new(ends[1], ends[2], 1.0));
     /// let (system, _) = builder.build()?;
     /// let [chain] = system.components() else { panic!("one chain") };
-    /// assert_eq!((chain.kind, chain.rows, chain.method, chain.entries), (Kind::Path, 2, Method::Dense, 3));
+    /// assert_eq!((chain.kind, chain.rows, chain.method, chain.entries), (ComponentKind::Path, 2, FactorMethod::Dense, 3));
     /// # Ok::<(), qhat::BuildError>(())
     /// ```
     pub fn components(&self) -> &[Component] {
@@ -240,6 +193,12 @@ impl System {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
     }
 
+    /// C, Ċ, γ, C_t and J of every row at one motion.
+    #[inline]
+    pub(crate) fn evaluate_rows<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut Rows) {
+        rows.evaluate(self.constraints.iter().map(|named| &named.constraint), motion);
+    }
+
     /// Q without the constraints that give way, for methods that solve their rows.
     pub(crate) fn add_applied_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
         Q.fill(0.0);
@@ -289,8 +248,8 @@ impl System {
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
-        self.switches = Switches::new(&self.constraints, dimension);
-        self.plan = Plan::new(self);
+        self.contacts = Contacts::new(&self.constraints, dimension);
+        self.chains = ChainPlan::new(&self.constraints, &self.inverse_mass);
     }
 
     fn plan_matrix(&self) -> MatrixPlan {

@@ -1,9 +1,5 @@
 //! A point mass and its number.
 
-/// The number of a particle: its place in the order they were added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ParticleId(pub usize);
-
 /// A point mass, as it is handed to the builder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
@@ -36,8 +32,14 @@ impl Particle {
         Particle { velocity: velocity.into(), ..self }
     }
 
-    /// The same, held where it is.
-    pub fn held(self) -> Self {
+    /// The same, fixed where it is: W = 0.
+    pub fn fixed(self) -> Self {
         Particle { fixed: true, ..self }
+    }
+
+    /// The same, fixed where it is.
+    #[deprecated(since = "0.1.0", note = "use `fixed`")]
+    pub fn held(self) -> Self {
+        self.fixed()
     }
 }

@@ -21,7 +21,7 @@ pub fn settings(integrator: Integrator, h: f64) -> Settings {
 /// A bob of 2 kg on a rod of length 1 m, `angle` from straight down [rad], at rest.
 pub fn pendulum(angle: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [libm::sin(angle), -libm::cos(angle)]).with_mass(2.0));
     builder.constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
     builder.build().unwrap()
@@ -30,7 +30,7 @@ pub fn pendulum(angle: f64) -> (System, State) {
 /// Two bobs, released from horizontal with a kink.
 pub fn double_pendulum() -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let elbow = builder.particle(Particle::at("elbow", [1.0, 0.0]));
     let tip = builder.particle(Particle::at("tip", [1.6, 0.8]).with_mass(0.5));
     builder.constraint("upper", Distance::new(pivot, elbow, 1.0)).constraint("lower", Distance::new(elbow, tip, 1.0));
@@ -41,7 +41,7 @@ pub fn double_pendulum() -> (System, State) {
 /// `links` links of 0.01 m and 0.01 kg, horizontal, hung from one end; the last bead `heavy` times heavier.
 pub fn chain(links: usize, heavy: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
-    let mut last = builder.particle(Particle::at("p0", [0.0, 0.0]).held());
+    let mut last = builder.particle(Particle::at("p0", [0.0, 0.0]).fixed());
     for i in 1..=links {
         let mass = if i == links { 0.01 * heavy } else { 0.01 };
         let next = builder.particle(Particle::at(format!("p{i}"), [0.01 * i as f64, 0.0]).with_mass(mass));
@@ -58,7 +58,7 @@ pub fn chains(count: usize, links: usize) -> (System, State) {
     for k in 0..count {
         let angle = k as f64;
         let step = [0.01 * libm::cos(angle), 0.01 * libm::sin(angle)];
-        let mut before = builder.particle(Particle::at(format!("{k}"), [k as f64, 0.0]).held());
+        let mut before = builder.particle(Particle::at(format!("{k}"), [k as f64, 0.0]).fixed());
         for i in 1..=links {
             let at = [k as f64 + i as f64 * step[0], i as f64 * step[1]];
             let bead = builder.particle(Particle::at(format!("{k}-{i}"), at).with_mass(0.01));
@@ -117,7 +117,7 @@ pub fn truss(panels: usize, braced: bool) -> (System, State) {
         .enumerate()
         .map(|(i, x)| builder.particle(Particle::at(format!("n{i}"), *x).with_mass(5.0)))
         .collect();
-    let ground = builder.particle(Particle::at("ground", [panels as f64, -1.0]).held());
+    let ground = builder.particle(Particle::at("ground", [panels as f64, -1.0]).fixed());
     let mut rod = |a: usize, b: usize| {
         let d = [at[a][0] - at[b][0], at[a][1] - at[b][1]];
         let r = (d[0] * d[0] + d[1] * d[1]).sqrt();

@@ -75,7 +75,7 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
     for (i, x) in points.iter().enumerate() {
         let particle = Particle::at(format!("p{i}"), x.clone()).with_mass(random.within(0.3, 3.0));
         let v = random.numbers(d, -1.0, 1.0);
-        builder.particle(if i == 0 { particle.held() } else { particle.with_velocity(v) });
+        builder.particle(if i == 0 { particle.fixed() } else { particle.with_velocity(v) });
     }
     for i in 1..particles {
         // The last one is nailed: hung from the fixed root itself, it would be held twice.

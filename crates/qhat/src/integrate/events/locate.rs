@@ -8,10 +8,11 @@
 //! has no answer, brackets a point and no root. The motion goes on from the near end: the contact is let go there for 1e-12 of a
 //! frame, and decided anew beyond.
 
-use super::{Attempt, Outcome, Switching};
+use super::{Attempt, EventStepper, Outcome};
+use crate::contact::{EventCause, first_violated};
+use crate::modes::Mode;
 use crate::point::Motion;
 use crate::state::State;
-use crate::switching::{Mode, Trigger, first_violated};
 
 /// How near zero a margin must come that may be on either side of it: it costs an attempt more than 1 would, and leaves the time of
 /// an impact good to 1e-12 of the extent over the speed.
@@ -23,22 +24,24 @@ const ATTEMPTS: usize = 60;
 /// Where a bracket is this part of the frame, its ends are the same time.
 const SAME_TIME: f64 = 1e-13;
 
-impl<const D: usize> Switching<'_, D> {
+impl<const D: usize> EventStepper<'_, D> {
     /// The length at which the first margin is met, between 0 and `high`, at which some are not.
     pub(super) fn locate(&mut self, state: &State, mut high: f64) -> Result<(f64, Attempt), Outcome> {
         let mut low = 0.0;
         let mut at_low = self.at_beginning.clone();
-        let mut at_high = self.margins.clone();
+        let mut at_high = self.event_functions.clone();
         let mut weight = 1.0;
         let mut was_low = false;
         for _ in 0..ATTEMPTS {
             let first = first_violated(&at_high);
-            let trigger = Trigger::of(first, self.modes.contacts.len());
-            let is_two_sided = trigger.is_two_sided(&self.modes);
+            let cause = EventCause::of(first, self.modes.contacts.len());
+            let is_two_sided = cause.is_two_sided(&self.modes);
             // Where a force jumps to the other side of zero, or its direction jumps.
-            let jump = match trigger {
-                Trigger::Normal(contact) | Trigger::Friction(contact) | Trigger::Turn(contact) if !is_two_sided => {
-                    Some(Trigger::Singular(contact))
+            let jump = match cause {
+                EventCause::Normal(contact) | EventCause::Friction(contact) | EventCause::Turn(contact)
+                    if !is_two_sided =>
+                {
+                    Some(EventCause::Singular(contact))
                 }
                 _ => None,
             };
@@ -50,29 +53,29 @@ impl<const D: usize> Switching<'_, D> {
             let middle = if g_low.is_finite() { g_low / (g_low - g_high) } else { 0.5 };
             let h = low + middle.clamp(1e-3, 1.0 - 1e-3) * (high - low);
             let attempt = self.try_length(state, h)?;
-            let is_violated = self.margins.iter().any(|&margin| margin < -1.0);
+            let is_violated = self.event_functions.iter().any(|&margin| margin < -1.0);
             // What opens, slips or breaks must be past the point, so that it is not taken back.
-            let margin = self.margins[first];
+            let margin = self.event_functions[first];
             let is_there = !is_violated && margin <= if is_two_sided { SHARP } else { 0.0 };
             if is_there || high - low < SAME_TIME * self.frame {
                 if let Some(jump) = jump.filter(|_| !is_there) {
                     // Nothing of what lies beyond can be kept.
                     let attempt =
                         if low > 0.0 { self.try_length(state, low)? } else { return Err(self.stay(state, jump)) };
-                    self.trigger = Some(jump);
+                    self.cause = Some(jump);
                     return Ok((low, attempt));
                 }
-                self.trigger = Some(trigger);
+                self.cause = Some(cause);
                 return Ok((h, attempt));
             }
             weight = if is_violated != was_low { 0.5 * weight } else { 1.0 };
             was_low = !is_violated;
             if is_violated {
                 high = h;
-                at_high.clone_from(&self.margins);
+                at_high.clone_from(&self.event_functions);
             } else {
                 low = h;
-                at_low.clone_from(&self.margins);
+                at_low.clone_from(&self.event_functions);
             }
         }
         Err(Outcome::NotMet)
@@ -96,7 +99,7 @@ impl<const D: usize> Switching<'_, D> {
         }
         let (equation, qd) = (&mut workspace.equation, &workspace.qd);
         equation.constrain(system, Motion::<D> { q: &middle[..coordinates], qd, t: t + 0.5 * h });
-        let contacts = system.switches.contacts.iter().zip(&self.modes.contacts);
+        let contacts = system.contacts.list.iter().zip(&self.modes.contacts);
         let open = contacts.filter(|&(contact, &mode)| mode == Mode::Open && !self.modes.is_gone(contact));
         let mut rows = open.map(|(contact, _)| contact.normal);
         let is_missed = rows.any(|row| equation.gaps.C[row] < -settings.constraint_tolerance * system.row_scale[row]);

@@ -1,0 +1,148 @@
+//! Open chains in eight lanes: the equation, the projection and the drift of a system that has nothing else.
+//!
+//! Same mathematics as `multiplier`, other order of work: the rows are taken in the half squared form, assembled, factored and
+//! solved in two sweeps along the chains (`path.rs`), with particles stored in blocks of eight (`plan.rs`). A test holds its
+//! accelerations to those of the general path. Where a pivot is tiny the caller goes over to the general path.
+
+mod drift;
+mod forces;
+mod path;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+use crate::drift::Drift;
+use crate::linalg::eight::{F8, vector_unit};
+use crate::state::State;
+use crate::structure::ChainPlan;
+use crate::system::System;
+use drift::Measure;
+use forces::Forces;
+use path::Eliminated;
+use solve::{Acceleration, Position, Solve, Velocity};
+use std::ops::Range;
+
+/// Newton's method with a factor of its own each time: from the error of one substep it takes one or two iterations.
+const MAX_ITERATIONS: usize = 8;
+
+/// Outcome of a projection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Projected {
+    /// Converged in so many iterations.
+    Met(usize),
+    /// It did not converge.
+    NotMet,
+    /// A pivot is tiny: rows depend on each other, and the general path must see to it.
+    Singular,
+}
+
+/// Arrays of one system in lanes.
+#[derive(Clone, Debug)]
+pub(crate) struct Chains {
+    forces: Forces,
+    rows: Vec<Eliminated>,
+    delta: Vec<F8>,
+}
+
+impl Chains {
+    pub(crate) fn new(system: &System, plan: &ChainPlan) -> Self {
+        Chains {
+            forces: Forces::new(system, plan),
+            rows: vec![Eliminated::default(); plan.blocks()],
+            delta: vec![F8::ZERO; plan.blocks() * system.dimension()],
+        }
+    }
+
+    /// Lays the state into lanes, nailed particles at their nails, and asks the constant forces.
+    pub(crate) fn begin<const D: usize>(
+        &mut self,
+        system: &System,
+        plan: &ChainPlan,
+        state: &State,
+        q: &mut [F8],
+        qd: &mut [F8],
+    ) {
+        let (user_q, user_qd) = (&mut self.forces.q, &mut self.forces.qd);
+        user_q.copy_from_slice(&state.q);
+        user_qd.copy_from_slice(&state.qd);
+        hold_nailed::<D>(plan, user_q, user_qd);
+        for place in plan.homes.iter().chain(&plan.copies) {
+            for c in 0..D {
+                q[place.block * D + c].0[place.lane] = user_q[place.particle * D + c];
+                qd[place.block * D + c].0[place.lane] = user_qd[place.particle * D + c];
+            }
+        }
+        self.forces.begin::<D>(system, plan, state.t);
+    }
+
+    /// Writes a motion in lanes back to the user's order.
+    pub(crate) fn end<const D: usize>(&self, plan: &ChainPlan, q: &[F8], qd: &[F8], state: &mut State) {
+        for place in &plan.homes {
+            for c in 0..D {
+                state.q[place.particle * D + c] = q[place.block * D + c].0[place.lane];
+                state.qd[place.particle * D + c] = qd[place.block * D + c].0[place.lane];
+            }
+        }
+        hold_nailed::<D>(plan, &mut state.q, &mut state.qd);
+    }
+
+    /// Writes q̈ at a motion, and returns the power of the forces without a potential [W]; `None` where rows depend on each
+    /// other.
+    pub(crate) fn accelerate<const D: usize>(
+        &mut self,
+        system: &System,
+        plan: &ChainPlan,
+        q: &[F8],
+        qd: &[F8],
+        t: f64,
+        qdd: &mut [F8],
+    ) -> Option<f64> {
+        let (WQ, power) = self.forces.apply::<D>(system, plan, q, qd, t);
+        let right = &|_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &WQ[at] };
+        let is_regular = Solve::<_, D> { plan, groups: &plan.groups, q, right, rows: &mut self.rows, out: qdd }.run();
+        is_regular.then_some(power)
+    }
+
+    /// Brings q onto C = 0, then q̇ onto Ċ = 0. `attainable` is the |C| relative to r at which to stop.
+    pub(crate) fn project<const D: usize>(
+        &mut self,
+        plan: &ChainPlan,
+        q: &mut [F8],
+        qd: &mut [F8],
+        attainable: f64,
+    ) -> Projected {
+        let (groups, rows, out) = (&plan.groups[..], &mut self.rows[..], &mut self.delta[..]);
+        for iteration in 0..=MAX_ITERATIONS {
+            let off = vector_unit().dispatch(Measure::<D> { plan, q, qd }).relative_length;
+            if off <= attainable {
+                let change = &*qd;
+                let right = &|_, at: Range<usize>| Velocity { qd: &change[at] };
+                let is_regular = Solve::<_, D> { plan, groups, q, right, rows, out }.run();
+                qd.copy_from_slice(out);
+                return if is_regular { Projected::Met(iteration) } else { Projected::Singular };
+            }
+            if !off.is_finite() {
+                break;
+            }
+            let from = &*q;
+            let right = &|stretch, at: Range<usize>| Position { stretch, q: &from[at] };
+            if !(Solve::<_, D> { plan, groups, q: from, right, rows, out }).run() {
+                return Projected::Singular;
+            }
+            q.copy_from_slice(out);
+        }
+        Projected::NotMet
+    }
+
+    /// What is left of C = 0 and Ċ = 0.
+    pub(crate) fn drift<const D: usize>(&self, plan: &ChainPlan, q: &[F8], qd: &[F8]) -> Drift {
+        vector_unit().dispatch(Measure::<D> { plan, q, qd })
+    }
+}
+
+fn hold_nailed<const D: usize>(plan: &ChainPlan, q: &mut [f64], qd: &mut [f64]) {
+    for (particle, at) in &plan.nailed {
+        q[particle * D..][..D].copy_from_slice(&at[..D]);
+        qd[particle * D..][..D].fill(0.0);
+    }
+}

@@ -1,0 +1,28 @@
+//! Layout: which particles each row names.
+
+use super::{Constraint, Holds};
+use crate::space::ParticleId;
+
+/// Which particles each row touches; row i owns the blocks `start[i]..start[i + 1]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Layout {
+    pub(crate) start: Vec<usize>,
+    pub(crate) particle: Vec<ParticleId>,
+}
+
+impl Layout {
+    pub(crate) fn new<'a>(constraints: impl Iterator<Item = &'a Constraint>, dimension: usize) -> Self {
+        let mut layout = Layout { start: vec![0], particle: Vec::new() };
+        for constraint in constraints {
+            for _ in 0..constraint.row_count(dimension) {
+                layout.particle.extend(constraint.particles());
+                layout.start.push(layout.particle.len());
+            }
+        }
+        layout
+    }
+
+    pub(crate) fn row_count(&self) -> usize {
+        self.start.len() - 1
+    }
+}

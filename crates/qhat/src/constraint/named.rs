@@ -1,0 +1,14 @@
+//! A constraint under the name that a user gave it.
+
+use super::Constraint;
+
+/// A constraint with its name and its place among the rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedConstraint {
+    /// Its name, for reports.
+    pub name: String,
+    /// The constraint.
+    pub constraint: Constraint,
+    /// Its first row in C, λ and J.
+    pub first_row: usize,
+}

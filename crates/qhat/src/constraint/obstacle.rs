@@ -1,0 +1,220 @@
+//! Obstacle: one particle stays on one side of a surface: the ground, a wall, a ball, a box.
+//!
+//! ```text
+//! φ(x): signed distance to the surface [m], positive where the particle may be;   n = ∇φ,   H = ∂²φ/∂x²
+//! normal      C = φ ≥ 0    J = nᵀ    Ċ = n·v     γ = vᵀH v     λ ≥ 0 [N]
+//! tangents    C = 0        J = tᵀ    Ċ = t·v     γ = 0         t ⊥ n, one in the plane, two in space
+//!
+//! half-space  φ = n·x − p                  H = 0
+//! ball        φ = ±(|x − c| − r)           H = ±(I − nnᵀ)/|x − c|       + outside, − inside
+//! box         φ = |max(y, 0)| + min(max_k y_k, 0) − ρ,   y_k = |x_k − c_k| − (half_k − ρ);   H ≠ 0 only off a corner or an edge
+//! ```
+//!
+//! ρ, a thousandth of the smallest half, is the radius of the edges and corners of a box. A sharp edge has no normal: what slides over it would
+//! be led round it, or flung off it, by forces without bound. Over a round one it leaves where v² > g ρ, and goes round where it is slower.
+//!
+//! The tangential rows have no positions to hold: sticking is a matter of velocities. Their true γ is ṫ·v, which is zero where
+//! v = 0, the only place where they take part. Friction is Coulomb's: |λ_t| ≤ μ λ_n.
+//!
+//! Fails in the centre of a ball, where there is no direction; the first axis is taken.
+
+use super::{ContactRows, Formulation, Holds, RowWriter};
+use crate::allowed::{finite, not_negative};
+use crate::linalg::block::{Block, diagonal, outer, plus, zero};
+use crate::point::{Motion, Point, dot, first, first_axis, minus, norm, scaled};
+use crate::space::ParticleId;
+use crate::stiffness::Stiffness;
+
+/// ρ of a box, of its smallest half.
+const ROUND: f64 = 1e-3;
+
+/// A surface with an outside; third components are ignored in two dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Surface {
+    /// The particle stays where normal·x ≥ offset: ground, a wall, a slope.
+    HalfSpace {
+        /// A direction of any length.
+        normal: [f64; 3],
+        /// [m], along the unit normal.
+        offset: f64,
+    },
+    /// A circle or sphere.
+    Ball {
+        /// [m].
+        centre: [f64; 3],
+        /// [m], positive.
+        radius: f64,
+        /// Whether the particle stays inside.
+        inside: bool,
+    },
+    /// A box along the axes that the particle stays out of. Its edges are round, with a thousandth of the smallest half for their radius.
+    Box {
+        /// [m].
+        centre: [f64; 3],
+        /// Half its size along each axis [m], positive.
+        half: [f64; 3],
+    },
+}
+
+/// One particle on one side of a surface, with restitution and friction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// The particle.
+    pub particle: ParticleId,
+    /// What it meets.
+    pub surface: Surface,
+    /// e, in [0, 1]: the part of the closing speed that an impact gives back.
+    pub restitution: f64,
+    /// μ of Coulomb's law, not negative.
+    pub friction: f64,
+}
+
+/// φ, n and H at one place.
+struct Near<const D: usize> {
+    phi: f64,
+    n: Point<D>,
+    H: Block<D>,
+}
+
+impl Obstacle {
+    /// Without restitution and friction.
+    pub fn new(particle: ParticleId, surface: Surface) -> Self {
+        Obstacle { particle, surface, restitution: 0.0, friction: 0.0 }
+    }
+
+    fn near<const D: usize>(&self, x: Point<D>) -> Near<D> {
+        match &self.surface {
+            Surface::HalfSpace { normal, offset } => {
+                let normal = first::<D>(normal);
+                let n = scaled(1.0 / norm(normal), normal);
+                Near { phi: dot(n, x) - offset, n, H: zero() }
+            }
+            Surface::Ball { centre, radius, inside } => {
+                let away = from_point(minus(x, first::<D>(centre)));
+                let sign = if *inside { -1.0 } else { 1.0 };
+                Near { phi: sign * (away.phi - radius), n: scaled(sign, away.n), H: plus(zero(), sign, away.H) }
+            }
+            Surface::Box { centre, half } => near_box(minus(x, first::<D>(centre)), first::<D>(half)),
+        }
+    }
+
+    fn has_friction(&self) -> bool {
+        self.friction > 0.0
+    }
+}
+
+/// φ = |d|.
+fn from_point<const D: usize>(d: Point<D>) -> Near<D> {
+    let length = norm(d);
+    if length == 0.0 {
+        return Near { phi: 0.0, n: first_axis(), H: zero() };
+    }
+    let n = scaled(1.0 / length, d);
+    Near { phi: length, n, H: plus(diagonal(1.0 / length), -1.0 / length, outer(1.0, n, n)) }
+}
+
+fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
+    let rho = ROUND * half.iter().copied().fold(f64::INFINITY, f64::min);
+    let sign: Point<D> = d.map(|d| if d < 0.0 { -1.0 } else { 1.0 });
+    let y: Point<D> = std::array::from_fn(|k| d[k].abs() - (half[k] - rho));
+    let near = if y.iter().filter(|&&y| y > 0.0).count() > 1 {
+        // Off a corner or an edge: as from a point.
+        from_point(std::array::from_fn(|k| sign[k] * y[k].max(0.0)))
+    } else {
+        let nearest = (1..D).fold(0, |nearest, k| if y[k] > y[nearest] { k } else { nearest });
+        let n = std::array::from_fn(|k| if k == nearest { sign[k] } else { 0.0 });
+        Near { phi: y[nearest], n, H: zero() }
+    };
+    Near { phi: near.phi - rho, ..near }
+}
+
+/// Unit vectors along the surface: in the plane n turned by a quarter, in space two that are orthogonal, without a jump but
+/// where n_z passes −0.9 (zero would do for a unit vector, but is where everything that moves in the plane lies). Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
+fn tangents<const D: usize>(n: Point<D>) -> [Point<D>; 2] {
+    if D == 2 {
+        let along = std::array::from_fn(|k| if k == 0 { -n[1] } else { n[0] });
+        return [along, [0.0; D]];
+    }
+    let (x, y, z) = (n[0], n[1], n[2 % D]);
+    let sign = if z < -0.9 { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + z);
+    let b = x * y * a;
+    let (one, other) = ([1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]);
+    [std::array::from_fn(|k| one[k]), std::array::from_fn(|k| other[k])]
+}
+
+impl Holds for Obstacle {
+    fn row_count(&self, dimension: usize) -> usize {
+        if self.has_friction() { dimension } else { 1 }
+    }
+
+    fn particles(&self) -> Vec<ParticleId> {
+        vec![self.particle]
+    }
+
+    fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
+        let v = motion.v(self.particle);
+        let Near { phi, n, H } = self.near(motion.x(self.particle));
+        let gamma = (0..D).map(|k| v[k] * dot(H[k], v)).sum();
+        rows.write(phi, dot(n, v), gamma, [n]);
+        if self.has_friction() {
+            for t in tangents(n).into_iter().take(D - 1) {
+                rows.write(0.0, dot(t, v), 0.0, [t]);
+            }
+        }
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        extent
+    }
+
+    fn contacts(&self, dimension: usize) -> Vec<ContactRows> {
+        let tangents = 1..self.row_count(dimension);
+        vec![ContactRows { normal: 0, tangents, restitution: self.restitution, friction: self.friction }]
+    }
+
+    fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let H = self.near::<D>(motion.x(self.particle)).H;
+        (0..D).map(|k| H[k][k].abs()).sum()
+    }
+
+    fn geometric_stiffness<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        lambda: &[f64],
+        visit: &mut impl FnMut(usize, usize, Stiffness<D>),
+    ) {
+        let H = self.near::<D>(motion.x(self.particle)).H;
+        visit(0, 0, Stiffness::Difference(plus(zero(), -lambda[0], H)));
+    }
+
+    fn formulated(&self, _: Formulation) -> Self {
+        self.clone()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        crate::allowed::check_restitution(self.restitution)?;
+        not_negative("the friction of a barrier", self.friction)?;
+        let positive = |what: &str, value: f64| {
+            if value.is_finite() && value > 0.0 {
+                Ok(())
+            } else {
+                Err(format!("{what} must be positive and finite, but is {value}"))
+            }
+        };
+        match &self.surface {
+            Surface::HalfSpace { normal, offset } => {
+                finite("the offset of a half-space", *offset)?;
+                positive("the length of the normal of a half-space", norm(*normal))
+            }
+            Surface::Ball { centre, radius, .. } => {
+                centre.iter().try_for_each(|&x| finite("the centre of a ball", x))?;
+                positive("the radius of a ball", *radius)
+            }
+            Surface::Box { centre, half } => {
+                centre.iter().try_for_each(|&x| finite("the centre of a box", x))?;
+                half.iter().try_for_each(|&half| positive("half the size of a box", half))
+            }
+        }
+    }
+}

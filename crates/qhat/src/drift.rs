@@ -1,0 +1,69 @@
+//! Drift: how far a motion is from C = 0 and Ċ = 0.
+
+use crate::constraint::Rows;
+use crate::point::{block, minus, norm};
+use crate::settings::Settings;
+use crate::system::System;
+
+/// What is left of C = 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Drift {
+    /// max |C| over the rigid rows.
+    pub(crate) residual: f64,
+    /// max |Ċ|.
+    pub(crate) residual_rate: f64,
+    /// max |C| over the row's own scale, and the row.
+    pub(crate) relative: f64,
+    pub(crate) worst_row: usize,
+    /// max ||d| − r|/r over the rigid rods.
+    pub(crate) relative_length: f64,
+}
+
+/// Reads the drift off rows that were evaluated at q; inactive rows count for nothing. `inactive` may be empty: every row is active.
+pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bool], q: &[f64]) -> Drift {
+    let mut drift = Drift::default();
+    let rigid = |row: &usize| system.softness[*row].is_rigid();
+    for row in (0..rows.C.len()).filter(rigid) {
+        drift.residual = drift.residual.max(rows.C[row].abs());
+        drift.residual_rate = drift.residual_rate.max(rows.Cd[row].abs());
+        let relative = rows.C[row].abs() / system.row_scale[row];
+        if relative > drift.relative {
+            (drift.relative, drift.worst_row) = (relative, row);
+        }
+    }
+    for named in &system.constraints {
+        if let Some(rod) = named.constraint.as_rod()
+            && rod.compliance == 0.0
+            && !inactive.get(named.first_row).is_some_and(|inactive| *inactive)
+        {
+            let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));
+            drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
+        }
+    }
+    drift
+}
+
+/// The rigid row with the largest |C| over its scale, and that number; NaN counts as infinite.
+pub(crate) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
+    let mut worst = (0, 0.0);
+    for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
+        if !system.softness[row].is_rigid() {
+            continue;
+        }
+        let relative = residual.abs() / scale;
+        if relative.is_nan() {
+            return (row, f64::INFINITY);
+        }
+        if relative > worst.1 {
+            worst = (row, relative);
+        }
+    }
+    worst
+}
+
+/// Where to stop: half the relative tolerance asked for, so that what is measured afterwards keeps the promise after
+/// rounding; or what the roundoff of the coordinates allows, where that is more. `farthest` is max |q| [m].
+pub(crate) fn attainable(system: &System, settings: &Settings, farthest: f64) -> f64 {
+    // A coordinate is rounded by ε|q|; a difference of two of them and its square root add a few more.
+    (0.5 * settings.constraint_tolerance).max(4.0 * f64::EPSILON * farthest / system.extent)
+}

@@ -1,0 +1,84 @@
+//! Energy, residuals and drift of a motion.
+//!
+//! ```text
+//! T = ½ Σ m_i v_i·v_i over the particles that can move,   V = Σ of the forces' potentials     [J]
+//! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
+//! ```
+
+use crate::force::Acts;
+use crate::point::{Motion, block, dot, norm};
+use crate::space::{ParticleId, in_dimension};
+use crate::state::{State, Work};
+use crate::system::System;
+
+/// The energy account [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// T.
+    pub kinetic: f64,
+    /// V, of gravity, springs, point forces and the mouse spring.
+    pub potential: f64,
+    /// What has crossed the border since t = 0.
+    pub work: Work,
+}
+
+impl Energy {
+    /// T + V.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+
+    /// T + V less all that came in: constant for an exact integrator.
+    pub fn balance(&self) -> f64 {
+        self.total() - self.work.total()
+    }
+}
+
+/// The energy account of a state.
+pub(crate) fn energy(system: &System, state: &State) -> Energy {
+    in_dimension!(system.dimension, D => {
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
+    })
+}
+
+fn kinetic<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+    0.5 * moving.map(|i| system.mass[i.0] * dot(motion.v(i), motion.v(i))).sum::<f64>()
+}
+
+pub(crate) fn potential<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    system.all_forces().map(|force| force.potential(motion, &system.mass)).sum()
+}
+
+/// Power of all forces without a potential [W].
+pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
+    system.all_forces().map(|force| force.power(motion)).sum()
+}
+
+/// −λᵀ C_t over the rows that are held [W], the power of what moves them: the constraint force has Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
+/// Ċ = 0 on legal motion.
+pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
+    let mut power = 0.0;
+    // The rule, and quick to see without a branch for each row.
+    if !Ct.iter().fold(false, |moves, &Ct| moves | (Ct != 0.0)) {
+        return power;
+    }
+    for (row, &Ct) in Ct.iter().enumerate() {
+        // What gives way is a force; its λ is told, but does no work of its own.
+        if Ct != 0.0 && system.softness[row].is_rigid() {
+            power -= lambda[row] * Ct;
+        }
+    }
+    power
+}
+
+/// The work the applied forces could do over the length of the system [J]: a scale for energies that has no zero point.
+pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
+    let mut Q = vec![0.0; system.coordinate_count()];
+    in_dimension!(system.dimension, D => {
+        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &mut Q);
+        let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+        system.extent * moving.map(|i| norm(block::<D>(&Q, i))).sum::<f64>()
+    })
+}

@@ -1,0 +1,270 @@
+//! Which particle sits where: chains laid into lanes, found once when a System is built.
+//!
+//! A system qualifies if every constraint is a rod in the length form or a nail, and its rods, cut at whatever is held, form
+//! open chains (a free particle is a chain without links). Chains of like length go side by side, one a lane; a long one
+//! alone is cut into eight stretches. A group of eight lanes with S rows has S + 1 blocks of particles: block i of a lane is
+//! the particle at the end of its row i, block 0 the one its first row begins at.
+
+use crate::constraint::{Constraint, DistanceForm, NailForm, NamedConstraint};
+use crate::linalg::eight::{F8, LANES};
+use std::ops::Range;
+
+/// A chain with fewer links than this is not cut: joining the stretches again would cost more than the lanes save.
+const WORTH_CUTTING: usize = 16;
+
+/// Eight lanes with the same number of rows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Group {
+    /// The block of its lanes' first particles.
+    pub(crate) first: usize,
+    /// S.
+    pub(crate) rows: usize,
+    /// Whether any lane follows another.
+    pub(crate) is_coupled: bool,
+    /// 1 in a lane that goes on where the lane before ends, else 0.
+    pub(crate) follows: F8,
+}
+
+impl Group {
+    /// Its blocks.
+    #[inline(always)]
+    pub(crate) fn blocks(&self) -> Range<usize> {
+        self.first..self.first + self.rows + 1
+    }
+
+    /// Its places in arrays of D numbers a block.
+    #[inline(always)]
+    pub(crate) fn coordinates<const D: usize>(&self) -> Range<usize> {
+        self.first * D..(self.first + self.rows + 1) * D
+    }
+}
+
+/// The fixed numbers of one group; see [`ChainPlan`].
+#[derive(Clone, Copy)]
+pub(crate) struct Stretch<'a> {
+    pub(crate) group: &'a Group,
+    pub(crate) w: &'a [F8],
+    pub(crate) rod: &'a [F8],
+    pub(crate) padding: &'a [F8],
+    pub(crate) r: &'a [F8],
+    pub(crate) inverse_r: &'a [F8],
+}
+
+/// One particle in one lane of one block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ChainSlot {
+    pub(crate) particle: usize,
+    pub(crate) block: usize,
+    pub(crate) lane: usize,
+}
+
+/// The lanes of a whole system. Arrays have one entry a block; those of rows belong to the row that ends at the block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ChainPlan {
+    pub(crate) groups: Vec<Group>,
+    /// w [1/kg], 0 for what is held.
+    pub(crate) w: Vec<F8>,
+    /// 1 for a particle that can move, counted once; 0 for copies, what is held and padding.
+    pub(crate) counted: Vec<F8>,
+    /// r [m], 0 in padding.
+    pub(crate) r: Vec<F8>,
+    /// 1/r [1/m], 0 in padding.
+    pub(crate) inverse_r: Vec<F8>,
+    /// 1 for a rod, 0 in padding, whose particles may drift anywhere.
+    pub(crate) rod: Vec<F8>,
+    /// 1 in padding, 0 for a rod: keeps pivots off zero.
+    pub(crate) padding: Vec<F8>,
+    /// Where each moving particle lives.
+    pub(crate) homes: Vec<ChainSlot>,
+    /// All the other places: a held particle at the end of chains, heads that copy a tail, padding.
+    pub(crate) copies: Vec<ChainSlot>,
+    /// Particles held by nails, with their points.
+    pub(crate) nailed: Vec<(usize, [f64; 3])>,
+}
+
+/// An open chain: its particles in order, one more than its rods.
+struct Chain {
+    particles: Vec<usize>,
+    lengths: Vec<f64>,
+}
+
+impl ChainPlan {
+    /// `None` if the system has anything else than open chains.
+    pub(crate) fn new(constraints: &[NamedConstraint], inverse_mass: &[f64]) -> Option<ChainPlan> {
+        let mut plan = ChainPlan::default();
+        let mut is_held: Vec<bool> = inverse_mass.iter().map(|&w| w == 0.0).collect();
+        for named in constraints {
+            if let Constraint::Nail(nail) = &named.constraint {
+                // A second nail, or one in what is fixed, is redundant or a contradiction: not for here.
+                if nail.form != NailForm::Vector || is_held[nail.particle.0] {
+                    return None;
+                }
+                is_held[nail.particle.0] = true;
+                plan.nailed.push((nail.particle.0, nail.at));
+            }
+        }
+        let mut chains = chains(constraints, &is_held)?;
+        chains.sort_by_key(|chain| std::cmp::Reverse(chain.lengths.len()));
+        let mut rest = &chains[..];
+        while let Some(longest) = rest.first().map(|chain| chain.lengths.len()) {
+            let alike = rest.iter().take(LANES).filter(|chain| 2 * chain.lengths.len() >= longest).count();
+            if longest >= WORTH_CUTTING && alike < LANES {
+                plan.cut(inverse_mass, &is_held, &rest[0]);
+                rest = &rest[1..];
+            } else {
+                let lanes = rest.len().min(LANES);
+                plan.side_by_side(inverse_mass, &is_held, &rest[..lanes]);
+                rest = &rest[lanes..];
+            }
+        }
+        plan.homes.sort_by_key(|place| place.particle);
+        Some(plan)
+    }
+
+    /// Number of blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.w.len()
+    }
+
+    /// Groups with their own part of each array.
+    #[inline(always)]
+    pub(crate) fn stretches<'a>(&'a self, groups: &'a [Group]) -> impl Iterator<Item = Stretch<'a>> {
+        groups.iter().map(
+            #[inline(always)]
+            |group| {
+                let blocks = group.blocks();
+                Stretch {
+                    group,
+                    w: &self.w[blocks.clone()],
+                    rod: &self.rod[blocks.clone()],
+                    padding: &self.padding[blocks.clone()],
+                    r: &self.r[blocks.clone()],
+                    inverse_r: &self.inverse_r[blocks],
+                }
+            },
+        )
+    }
+
+    /// Where a moving particle lives; `None` for what is held.
+    pub(crate) fn home(&self, particle: usize) -> Option<ChainSlot> {
+        let found = self.homes.binary_search_by_key(&particle, |place| place.particle);
+        found.ok().map(|k| self.homes[k])
+    }
+
+    fn cut(&mut self, inverse_mass: &[f64], is_held: &[bool], chain: &Chain) {
+        let rows = chain.lengths.len().div_ceil(LANES);
+        let stretches: Vec<(&[usize], &[f64])> = chain
+            .lengths
+            .chunks(rows)
+            .enumerate()
+            .map(|(k, lengths)| (&chain.particles[k * rows..=k * rows + lengths.len()], lengths))
+            .collect();
+        self.group(inverse_mass, is_held, &stretches, true);
+    }
+
+    fn side_by_side(&mut self, inverse_mass: &[f64], is_held: &[bool], chains: &[Chain]) {
+        let stretches: Vec<(&[usize], &[f64])> =
+            chains.iter().map(|chain| (&chain.particles[..], &chain.lengths[..])).collect();
+        self.group(inverse_mass, is_held, &stretches, false);
+    }
+
+    /// A group of up to eight stretches, the first of which is the longest.
+    fn group(&mut self, inverse_mass: &[f64], is_held: &[bool], stretches: &[(&[usize], &[f64])], is_coupled: bool) {
+        let (first, rows) = (self.w.len(), stretches[0].1.len());
+        let end = first + rows + 1;
+        for array in [&mut self.w, &mut self.counted, &mut self.r, &mut self.inverse_r, &mut self.rod] {
+            array.resize(end, F8::ZERO);
+        }
+        self.padding.resize(end, F8::splat(1.0));
+        let mut follows = F8::ZERO;
+        for lane in 0..LANES {
+            // An empty lane is padded with what is in the first, held.
+            let (particles, lengths) = stretches.get(lane).copied().unwrap_or((&stretches[0].0[..1], &[]));
+            let is_empty = lane >= stretches.len();
+            if is_coupled && lane > 0 && !is_empty {
+                follows.0[lane] = 1.0;
+            }
+            for i in 0..=rows {
+                let block = first + i;
+                let place = ChainSlot { particle: particles[i.min(lengths.len())], block, lane };
+                let is_padding = is_empty || i > lengths.len();
+                let moves = !is_padding && !is_held[place.particle];
+                if moves {
+                    self.w[block].0[lane] = inverse_mass[place.particle];
+                }
+                if moves && !(i == 0 && follows.0[lane] > 0.0) {
+                    self.counted[block].0[lane] = 1.0;
+                    self.homes.push(place);
+                } else {
+                    self.copies.push(place);
+                }
+                if i > 0 && !is_padding {
+                    self.r[block].0[lane] = lengths[i - 1];
+                    self.inverse_r[block].0[lane] = 1.0 / lengths[i - 1];
+                    self.rod[block].0[lane] = 1.0;
+                    self.padding[block].0[lane] = 0.0;
+                }
+            }
+        }
+        self.groups.push(Group { first, rows, is_coupled, follows });
+    }
+}
+
+/// The open chains between what is held, longest walks from their ends; `None` if anything branches or closes.
+fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain>> {
+    let mut rods = Vec::new();
+    let mut touching = vec![[usize::MAX; 2]; is_held.len()];
+    for named in constraints {
+        let Some(rod) = named.constraint.as_rod() else {
+            if matches!(named.constraint, Constraint::Nail(_)) {
+                continue;
+            }
+            return None;
+        };
+        if rod.compliance > 0.0 {
+            // What gives way is a spring.
+            continue;
+        }
+        if rod.form != DistanceForm::Length || rod.breaks_at.is_some() || (is_held[rod.a.0] && is_held[rod.b.0]) {
+            return None;
+        }
+        for end in [rod.a.0, rod.b.0] {
+            if !is_held[end] {
+                let free = touching[end].iter().position(|&rod| rod == usize::MAX)?;
+                touching[end][free] = rods.len();
+            }
+        }
+        rods.push((rod.a.0, rod.b.0, rod.length));
+    }
+    let mut chains = Vec::new();
+    for particle in 0..is_held.len() {
+        if !is_held[particle] && touching[particle][0] == usize::MAX {
+            chains.push(Chain { particles: vec![particle], lengths: Vec::new() });
+        }
+    }
+    let mut is_walked = vec![false; rods.len()];
+    for start in 0..rods.len() {
+        let (a, b, _) = rods[start];
+        let is_end = |particle: usize| is_held[particle] || touching[particle][1] == usize::MAX;
+        let Some(end) = [a, b].into_iter().find(|&particle| is_end(particle)) else { continue };
+        if is_walked[start] {
+            continue;
+        }
+        let mut chain = Chain { particles: vec![end], lengths: Vec::new() };
+        let (mut rod, mut particle) = (start, end);
+        loop {
+            is_walked[rod] = true;
+            let (a, b, length) = rods[rod];
+            particle = if a == particle { b } else { a };
+            chain.particles.push(particle);
+            chain.lengths.push(length);
+            if is_end(particle) {
+                break;
+            }
+            let [one, other] = touching[particle];
+            rod = if one == rod { other } else { one };
+        }
+        chains.push(chain);
+    }
+    is_walked.iter().all(|&walked| walked).then_some(chains)
+}

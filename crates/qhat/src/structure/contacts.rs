@@ -1,0 +1,61 @@
+//! Contacts and breakable constraints of a System, found once.
+
+use crate::constraint::{Holds, NamedConstraint};
+use std::ops::Range;
+
+/// A row that opens and closes, with its rows of friction.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Contact {
+    /// Its place among the constraints.
+    pub(crate) constraint: usize,
+    pub(crate) normal: usize,
+    /// None without friction; one in the plane, two in space.
+    pub(crate) tangents: Range<usize>,
+    /// e, the part of the closing speed that an impact gives back.
+    pub(crate) restitution: f64,
+    /// μ.
+    pub(crate) friction: f64,
+    /// Its place among what breaks.
+    pub(crate) breakable: Option<usize>,
+}
+
+/// A constraint that breaks.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Breakable {
+    /// Its place among the constraints.
+    pub(crate) constraint: usize,
+    pub(crate) rows: Range<usize>,
+    /// The tension that it does not survive [N].
+    pub(crate) limit: f64,
+}
+
+/// Everything of a system that contacts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Contacts {
+    pub(crate) list: Vec<Contact>,
+    pub(crate) breakables: Vec<Breakable>,
+}
+
+impl Contacts {
+    pub(crate) fn new(constraints: &[NamedConstraint], dimension: usize) -> Self {
+        let mut contacts = Contacts::default();
+        for (place, NamedConstraint { constraint, first_row, .. }) in constraints.iter().enumerate() {
+            let breakable = constraint.breaks_at().map(|_| contacts.breakables.len());
+            for rows in constraint.contacts(dimension) {
+                let normal = first_row + rows.normal;
+                let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
+                let (restitution, friction) = (rows.restitution, rows.friction);
+                contacts.list.push(Contact { constraint: place, normal, tangents, restitution, friction, breakable });
+            }
+            if let Some(limit) = constraint.breaks_at() {
+                let rows = *first_row..first_row + constraint.row_count(dimension);
+                contacts.breakables.push(Breakable { constraint: place, rows, limit });
+            }
+        }
+        contacts
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty() && self.breakables.is_empty()
+    }
+}

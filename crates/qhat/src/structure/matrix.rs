@@ -1,0 +1,165 @@
+//! The structure of A = J W Jᵀ: its pattern, its order of elimination and the contributions to each entry.
+//!
+//! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which pairs of
+//! blocks meet in which entry never changes once a System is built. `multiplier/matrix.rs` writes the numbers.
+
+use crate::constraint::Layout;
+use crate::constraint::Softness;
+use crate::linalg::{Component, DENSE_UP_TO, EliminationPlan, Hubs, Incidence, Pattern, Symbolic};
+use crate::space::ParticleId;
+
+use std::sync::Arc;
+
+/// The structure of A: its pattern, what is summed into each entry, and how it will be factored.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MatrixStructure {
+    /// In the order of elimination.
+    pub(crate) pattern: Pattern,
+    /// `order[k]` is the row that is eliminated k-th, or one of a hub's unknowns, which are numbered after the rows.
+    pub(crate) order: Vec<u32>,
+    pub(crate) on_hubs: Vec<OnHub>,
+    /// For each particle in turn that can move: its blocks of J, and then the slots that their pairs are added to.
+    pub(crate) meeting: Vec<Meeting>,
+    pub(crate) blocks: Vec<u32>,
+    pub(crate) slots: Vec<u32>,
+    /// Rows all of whose particles are fixed, and rows that give way and are forces here: their row of A is zero for good.
+    pub(crate) inert: Vec<bool>,
+    pub(crate) symbolic: Arc<Symbolic>,
+    pub(crate) components: Vec<Component>,
+}
+
+/// One number of B.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnHub {
+    /// The place of its row in the order of elimination.
+    pub(crate) row: u32,
+    pub(crate) slot: u32,
+    /// Which number of J it is made of.
+    pub(crate) number: u32,
+    pub(crate) particle: ParticleId,
+}
+
+/// Where the rows of one particle meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Meeting {
+    pub(crate) particle: ParticleId,
+    /// Number of its blocks of J.
+    pub(crate) blocks: u32,
+}
+
+/// What is decided of A before anything large is allocated for it.
+#[derive(Clone, Debug)]
+pub(crate) struct MatrixPlan {
+    incidence: Incidence,
+    hubs: Hubs,
+    plan: EliminationPlan,
+    inert: Vec<bool>,
+    /// The components of A, without the rows that cannot act.
+    pub(crate) components: Vec<Component>,
+}
+
+impl MatrixPlan {
+    pub(crate) fn new(layout: &Layout, W: &[f64], softness: &[Softness], dimension: usize) -> Self {
+        let m = layout.row_count();
+        let entries = |row: usize| layout.start[row]..layout.start[row + 1];
+        let moves = |e: &usize| W[layout.particle[*e].0] > 0.0;
+        let acts = |row: usize| softness[row].is_rigid() && entries(row).any(|e| moves(&e));
+        let inert: Vec<bool> = (0..m).map(|row| !acts(row)).collect();
+        let points = |row: usize| {
+            let is_inert = inert[row];
+            let acting = entries(row).filter(move |_| !is_inert).filter(moves);
+            acting.map(|e| layout.particle[e].0 as u32)
+        };
+        let incidence = Incidence::new(W.len(), (0..m).map(points));
+        let hubs = Hubs::new(&incidence, dimension);
+        let plan = EliminationPlan::with_hubs(&incidence, &hubs);
+        let acting = plan.components.iter().zip(&plan.found_from).filter(|&(_, &row)| !inert[row as usize]);
+        let components = acting.map(|(component, _)| *component);
+        let components =
+            if m <= DENSE_UP_TO { components.map(Component::dense).collect() } else { components.collect() };
+        MatrixPlan { incidence, hubs, plan, inert, components }
+    }
+
+    /// What the factor will take [bytes].
+    pub(crate) fn memory(&self) -> u64 {
+        self.components.iter().map(|component| component.memory).sum()
+    }
+}
+
+impl MatrixStructure {
+    pub(crate) fn new(layout: &Layout, W: &[f64], planned: MatrixPlan) -> Self {
+        let MatrixPlan { incidence, hubs, plan, inert, components } = planned;
+        let m = layout.row_count();
+        // What is small is factored densely, in the order given.
+        let order = if m <= DENSE_UP_TO { (0..m as u32).collect() } else { plan.order.clone() };
+        let permuted = hubs.extended(&incidence).permuted(&order);
+        let pattern = Pattern::of_incidence(&permuted);
+        let negative = order.iter().map(|&row| row as usize >= m).collect();
+        let symbolic = Arc::new(Symbolic::new(&pattern, &plan, None, negative));
+        let mut structure = MatrixStructure {
+            pattern,
+            order,
+            on_hubs: Vec::new(),
+            meeting: Vec::new(),
+            blocks: Vec::new(),
+            slots: Vec::new(),
+            inert,
+            symbolic,
+            components,
+        };
+        structure.meet(layout, W.len(), &permuted);
+        structure.touch_hubs(layout, &incidence, &hubs);
+        structure
+    }
+
+    /// Finds the slots of B.
+    fn touch_hubs(&mut self, layout: &Layout, incidence: &Incidence, hubs: &Hubs) {
+        let mut place = vec![0; if hubs.is_empty() { 0 } else { self.order.len() }];
+        for (k, &row) in self.order.iter().enumerate().take(place.len()) {
+            place[row as usize] = k;
+        }
+        for (hub, &point) in hubs.points.iter().enumerate() {
+            let particle = ParticleId(point as usize);
+            for &row in incidence.unknowns_at(point) {
+                let entries = layout.start[row as usize]..layout.start[row as usize + 1];
+                for e in entries.filter(|&e| layout.particle[e] == particle) {
+                    for (c, unknown) in hubs.unknowns(incidence, hub).enumerate() {
+                        let (k, l) = (place[row as usize], place[unknown as usize]);
+                        if let Some(slot) = self.pattern.slot(k.max(l), k.min(l)) {
+                            let number = (e * hubs.width + c) as u32;
+                            self.on_hubs.push(OnHub { row: k as u32, slot: slot as u32, number, particle });
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds the slots of all pairs of rows at each particle, particles in the order in which elimination touches them.
+    fn meet(&mut self, layout: &Layout, particles: usize, incidence: &Incidence) {
+        let mut seen = vec![false; particles];
+        for first in 0..self.order.len() as u32 {
+            for &p in incidence.points_of(first) {
+                // What unknowns share with a hub is no particle.
+                if p as usize >= particles || std::mem::replace(&mut seen[p as usize], true) {
+                    continue;
+                }
+                let rows = incidence.unknowns_at(p);
+                for (k, &left) in rows.iter().enumerate() {
+                    let row = self.order[left as usize] as usize;
+                    let entries = layout.start[row]..layout.start[row + 1];
+                    let here = entries.into_iter().find(|&e| layout.particle[e].0 == p as usize);
+                    self.blocks.extend(here.map(|e| e as u32));
+                    let slots = rows[..=k].iter().filter_map(|&right| self.pattern.slot(left as usize, right as usize));
+                    self.slots.extend(slots.map(|slot| slot as u32));
+                }
+                self.meeting.push(Meeting { particle: ParticleId(p as usize), blocks: rows.len() as u32 });
+            }
+        }
+    }
+
+    /// Whether what is so numbered is an unknown of a hub, and no row.
+    pub(crate) fn is_hub(&self, row: u32) -> bool {
+        row as usize >= self.inert.len()
+    }
+}
