@@ -1,7 +1,7 @@
 //! A pair that stops at events: where a contact closes, opens, begins or ceases to slip, and where something breaks.
 //!
 //! Between events the modes of all contacts stand, and a substep is a substep of the pair. What is watched are the margins of
-//! `switching/event_functions.rs`, all at least −1 while the modes are right.
+//! `contact/event_functions.rs`, all at least −1 while the modes are right.
 //!
 //! A substep at whose end one lies below −1 is tried again with a length at which the first of them is between −1 and 1 (`locate.rs`).
 

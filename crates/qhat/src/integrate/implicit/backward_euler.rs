@@ -4,7 +4,7 @@
 //! q' = q + h q̇',   q̇' = q̇ + h W (Q(q', q̇') + J(q')ᵀ λ),   C(q') = 0
 //! ```
 //!
-//! then q̇' onto Ċ = 0. Newton's method on it is that of `end_of_step` with q* = q, q̇* = q̇ and h_e = h. What swings loses
+//! then q̇' onto Ċ = 0. Newton's method on it is that of `implicit` with q* = q, q̇* = q̇ and h_e = h. What swings loses
 //! energy, the more the longer the step: at 1/60 s a whipping chain of 100 loses most of it in two seconds.
 //! Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.3; Tournier et al., Stable Constrained Dynamics (2015).
 
