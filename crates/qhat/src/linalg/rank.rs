@@ -1,8 +1,9 @@
-//! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and the
-//! rank is the number of pivots before they fall to the roundoff of what was subtracted.
-//! Source: Higham, Analysis of the Cholesky decomposition of a semi-definite matrix (1990).
+//! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and
+//! the rank is the number of pivots before they fall to the roundoff of what was subtracted. Source: Higham, Analysis
+//! of the Cholesky decomposition of a semi-definite matrix (1990).
 
-/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is consumed.
+/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is
+/// consumed.
 pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
     // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
     // amplified by the conditioning of the rows already taken, for which three digits are allowed.
