@@ -17,10 +17,8 @@ const BUILT: [&str; 1] = ["playground/src/wasm"];
 const GENERATED: [&str; 2] = ["package-lock.json", "Cargo.lock"];
 
 /// Endings of files that people write.
-const ENDINGS: [&str; 21] = [
-    "rs", "md", "toml", "ts", "mts", "svelte", "css", "html", "js", "mjs", "json", "jsonc", "py", "cpp", "hpp", "sh",
-    "cff", "yml", "yaml", "editorconfig", "gitattributes",
-];
+const ENDINGS: &str = "rs md toml ts mts svelte css html js mjs json jsonc py cpp hpp sh cff yml yaml editorconfig \
+    gitattributes";
 
 /// Files without an ending that people write, by their path from the root.
 const NAMED: [&str; 5] = ["Makefile", "scripts/setup", "scripts/build-wasm", ".ci/run", "benches/peers/run"];
@@ -42,7 +40,7 @@ fn collect(root: &Path, folder: &str, found: &mut Vec<String>) {
             continue;
         }
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-        let is_written = ENDINGS.contains(&ending) || NAMED.contains(&path.as_str());
+        let is_written = ENDINGS.split(' ').any(|known| known == ending) || NAMED.contains(&path.as_str());
         if is_written && !GENERATED.contains(&name.as_str()) {
             found.push(path);
         }

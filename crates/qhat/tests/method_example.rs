@@ -442,6 +442,9 @@ fn every_number_of_the_example_is_what_the_engine_computes() {
 
 #[test]
 fn a_wrong_digit_would_be_seen() {
-    assert_eq!(tables(&format!("{HEADING}\n|---|---|---|---|\n| q | here | 1.5, −2 | m |\n")), [["q", "here", "1.5, −2", "m"]]);
+    assert_eq!(
+        tables(&format!("{HEADING}\n|---|---|---|---|\n| q | here | 1.5, −2 | m |\n")),
+        [["q", "here", "1.5, −2", "m"]]
+    );
     assert_eq!((number("−2"), half_a_digit("−2"), half_a_digit("1.50")), (-2.0, 0.5, 0.005));
 }
