@@ -249,6 +249,8 @@ fn energy() -> Vec<Line> {
     let start = Simulation::new(system.clone(), state.clone(), Settings::default()).unwrap().energy();
     let euler = stepped(&system, &state, Integrator::Euler);
     let end = euler.energy();
+    let dop853 = stepped(&system, &state, Integrator::Dop853).energy();
+    assert!((dop853.balance() - start.balance()).abs() < 1e-9, "the page says so: {dop853:?}");
     vec![
         ("T", vec![start.kinetic]),
         ("V", vec![start.potential]),
@@ -427,6 +429,7 @@ fn every_number_of_the_example_is_what_the_engine_computes() {
         let expected: Vec<&str> = computed.iter().map(|(symbol, _)| *symbol).collect();
         assert_eq!(symbols, expected, "{page}.md: the rows of the example");
         for (row, (symbol, values)) in rows.iter().zip(&computed) {
+            assert_eq!(row.len(), 4, "{page}.md: no cell may be empty: {row:?}");
             let printed: Vec<&str> = row[2].split(", ").collect();
             let fits = |(printed, value): (&&str, &f64)| {
                 // Rounding of the engine is below 1e-13 of these numbers; a hair of it lets a digit 5 round either way.
