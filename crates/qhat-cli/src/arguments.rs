@@ -3,6 +3,7 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use qhat::Integrator;
+use qhat_shapes::Options;
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "Exit codes:
@@ -23,6 +24,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Simulate a scene; write its trajectory and a summary
     Run(Run),
+    /// Draw a still of a scene, of any time of its run, or of a frame of a trajectory
+    Render(Render),
     /// Say what is wrong with a scene, or its degrees of freedom and rank
     Check(Check),
     /// Open a scene in the browser, to play with
@@ -77,6 +80,56 @@ pub(crate) struct Run {
     /// Show no progress, and print no summary unless it is asked for with --json
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Render {
+    /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: String,
+
+    /// Write the picture to this file; its ending says how: .svg or .png
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+
+    /// Write over an output that exists
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Simulate to this time and draw what is there [s] [default: the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) at: Option<f64>,
+
+    /// Draw a frame of this trajectory of the scene (.npz), as `qhat run -o` writes it, and simulate nothing
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "at")]
+    pub(crate) from: Option<PathBuf>,
+
+    /// Which frame of the trajectory, counted from 0 [default: the last]
+    #[arg(long, value_name = "K", requires = "from")]
+    pub(crate) frame: Option<u64>,
+
+    /// Width and height of the picture [px]
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size)]
+    pub(crate) size: [u32; 2],
+
+    /// Light strokes on a dark background
+    #[arg(long)]
+    pub(crate) dark: bool,
+
+    /// Show no progress
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Width and height, as in 1200x800.
+fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let (least, most) = (Options::LEAST, Options::MOST);
+    let sides = text.split_once(['x', '×']).ok_or("a size is written as in 1200x800")?;
+    let side = |text: &str| match text.parse() {
+        Ok(side) if (least..=most).contains(&side) => Ok(side),
+        _ => Err(format!("width and height are whole numbers from {least} to {most}, not `{text}`")),
+    };
+    Ok([side(sides.0)?, side(sides.1)?])
 }
 
 #[derive(Args, Debug)]

@@ -7,11 +7,14 @@ mod arguments;
 mod bench;
 mod check;
 mod failure;
+mod output;
 mod play;
 mod print;
+mod render;
 mod run;
 mod scenes;
 mod source;
+mod status;
 mod trajectory;
 
 use arguments::{Arguments, Command};
@@ -22,6 +25,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Render(arguments) => render::render(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Play(arguments) => play::play(&arguments),
         Command::Scenes(arguments) => scenes::scenes(&arguments),

@@ -29,7 +29,7 @@ const BOB: ParticleId = ParticleId(1);
 /// Pivot, bob and gravity; what holds the bob is added.
 fn hung(hold: impl FnOnce(&mut SystemBuilder)) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
-    builder.particle(Particle::at("pivot", [0.0, 0.0]).held());
+    builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     builder.particle(Particle::at("bob", [1.0, -1.0]).with_mass(2.0).with_velocity([1.0, 1.0]));
     builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
     hold(&mut builder);

@@ -1,21 +1,21 @@
 //! `qhat run`: from a scene to a trajectory and a summary.
 
 mod events;
-mod frames;
-mod interrupt;
+pub(crate) mod frames;
+pub(crate) mod interrupt;
 mod origin;
-mod progress;
+pub(crate) mod progress;
 mod summary;
 
 use crate::arguments;
-use crate::failure::{Failure, INTERRUPTED, NOT_REACHED, warn};
+use crate::failure::{Failure, warn};
 use crate::print;
 use crate::source::Source;
 use crate::trajectory::{Recorder, Target};
 use cpu_time::ProcessTime;
 use frames::Frames;
 use interrupt::Interrupt;
-use origin::{Origin, Status};
+use origin::Origin;
 use progress::Progress;
 use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
 use std::process::ExitCode;
@@ -64,11 +64,7 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     if let Some(message) = &origin.error {
         warn(format!("{}: {message}", origin.status));
     }
-    Ok(match origin.status {
-        Status::Done => ExitCode::SUCCESS,
-        Status::Diverged | Status::Infeasible => ExitCode::from(NOT_REACHED),
-        Status::Interrupted => ExitCode::from(INTERRUPTED),
-    })
+    Ok(origin.status.exit_code())
 }
 
 /// The scene's settings with what the command line says instead.

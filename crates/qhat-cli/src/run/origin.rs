@@ -5,35 +5,10 @@ use super::frames::Frames;
 use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
+use crate::status::Status;
 use qhat::{Feedback, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
-use std::fmt;
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Status {
-    /// It reached its end.
-    Done,
-    /// The motion became infinite, left its constraints, or needed ever smaller steps.
-    Diverged,
-    /// No positions near by satisfy the constraints.
-    Infeasible,
-    /// Someone pressed Ctrl-C.
-    Interrupted,
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Status::Done => "done",
-            Status::Diverged => "diverged",
-            Status::Infeasible => "infeasible",
-            Status::Interrupted => "interrupted",
-        })
-    }
-}
 
 /// Written with every trajectory.
 #[derive(Clone, Debug, Serialize)]
@@ -104,10 +79,7 @@ impl Origin {
                 (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
-            Some(Stop::Error(error @ (StepError::NotSatisfied { .. } | StepError::Penetrates { .. }))) => {
-                (Status::Infeasible, Some(error.to_string()))
-            }
-            Some(Stop::Error(error)) => (Status::Diverged, Some(error.to_string())),
+            Some(Stop::Error(error)) => (Status::of(error), Some(error.to_string())),
         };
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! What a run tells at its end.
 
 use super::events::Events;
-use super::origin::{Origin, Status};
+use super::origin::Origin;
 use crate::failure::Failure;
 use crate::print::{self, count, small};
+use crate::status::Status;
 use qhat::{Integrator, Simulation, Solver, StepReport, System, Terms, Warning};
 use serde::Serialize;
 use std::time::Duration;

@@ -3,11 +3,13 @@
 mod csv;
 mod npy;
 mod npz;
+pub(crate) mod stored;
 mod target;
 
 pub(crate) use target::Target;
 
 use crate::failure::Failure;
+use crate::output::ending;
 use qhat::{System, Terms};
 use std::path::Path;
 
@@ -23,8 +25,7 @@ pub(crate) enum Format {
 impl Format {
     /// The format that the ending of a file name stands for.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("npz") => Ok(Format::Npz),
             Some("csv") => Ok(Format::Csv),
             _ => Err(Failure::input(format!(
