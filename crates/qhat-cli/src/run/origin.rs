@@ -2,38 +2,13 @@
 
 use super::Stop;
 use super::frames::Frames;
+use super::status::Status;
 use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
 use qhat::{Feedback, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
-use std::fmt;
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Status {
-    /// It reached its end.
-    Done,
-    /// The motion became infinite, left its constraints, or needed ever smaller steps.
-    Diverged,
-    /// No positions near by satisfy the constraints.
-    Infeasible,
-    /// Someone pressed Ctrl-C.
-    Interrupted,
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Status::Done => "done",
-            Status::Diverged => "diverged",
-            Status::Infeasible => "infeasible",
-            Status::Interrupted => "interrupted",
-        })
-    }
-}
 
 /// Written with every trajectory.
 #[derive(Clone, Debug, Serialize)]

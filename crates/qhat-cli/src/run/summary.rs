@@ -1,7 +1,8 @@
 //! What a run tells at its end.
 
 use super::events::Events;
-use super::origin::{Origin, Status};
+use super::origin::Origin;
+use super::status::Status;
 use crate::failure::Failure;
 use crate::print::{self, count, small};
 use qhat::{Integrator, Simulation, Solver, StepReport, System, Terms, Warning};
