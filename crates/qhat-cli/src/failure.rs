@@ -1,6 +1,8 @@
 //! What ends the command early, with its exit code.
 
-use crate::print;
+use qhat::StepError;
+use qhat_bench::UnknownWorkload;
+use qhat_scene::fitted;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -42,7 +44,19 @@ impl Failure {
     }
 }
 
+impl From<StepError> for Failure {
+    fn from(error: StepError) -> Self {
+        Failure::input(error)
+    }
+}
+
+impl From<UnknownWorkload> for Failure {
+    fn from(error: UnknownWorkload) -> Self {
+        Failure::input(error)
+    }
+}
+
 /// Prints a line on stderr; a closed stderr is nobody's loss.
 pub(crate) fn warn(line: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", print::plain(&line.to_string()));
+    let _ = writeln!(io::stderr().lock(), "{}", fitted(&line.to_string()));
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use qhat::Solver;
+use qhat_scene::fitted;
 use serde::{Serialize, Serializer};
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -31,18 +32,6 @@ pub(crate) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value).map_err(|error| Failure::input(format!("cannot write JSON: {error}")))
 }
 
-/// Text that moves nothing on a terminal: names come from scenes, and a scene may come from anywhere.
-pub(crate) fn plain(text: &str) -> String {
-    let fit = |character: char| match character {
-        '\n' => character,
-        // These turn the direction of writing, so that a line could say what it does not.
-        '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => '\u{FFFD}',
-        character if character.is_control() => '\u{FFFD}',
-        character => character,
-    };
-    text.chars().map(fit).collect()
-}
-
 /// A number of things in words.
 pub(crate) fn count(number: usize, thing: &str) -> String {
     if number == 1 { format!("1 {thing}") } else { format!("{number} {thing}s") }
@@ -62,7 +51,7 @@ pub(crate) fn table(title: &str, lines: &[(&str, String)]) -> Result<(), Failure
         let what = what.replace('\n', &format!("\n  {:width$}  ", ""));
         out += &format!("  {word:width$}  {what}\n");
     }
-    text(&plain(&out))
+    text(&fitted(&out))
 }
 
 /// A path to the multipliers, as the end of a sentence.

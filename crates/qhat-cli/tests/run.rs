@@ -1,8 +1,6 @@
 //! `qhat run`: what it writes and what it says.
 
-mod common;
-
-use common::{Folder, INFEASIBLE, PENDULUM, npz};
+use crate::common::{Folder, INFEASIBLE, PENDULUM, npz};
 
 /// Sums of the same products in another order differ by a few roundings of numbers of this size.
 const ROUNDOFF: f64 = 1e-12;

@@ -1,8 +1,6 @@
 //! Scenes, schema, completions, help; and every command in the guide.
 
-mod common;
-
-use common::{Folder, QHAT};
+use crate::common::{Folder, QHAT};
 use std::process::{Command, Stdio};
 
 #[test]

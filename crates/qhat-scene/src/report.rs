@@ -137,6 +137,12 @@ fn shortened(text: &str) -> String {
     shown
 }
 
+/// Text fit for a terminal: names come from scenes, and a scene may come from anywhere. Control characters, and those that
+/// turn the direction of writing, become U+FFFD or a space; lines stay lines.
+pub fn fitted(text: &str) -> String {
+    text.chars().map(|character| if character == '\n' { character } else { fit(character) }).collect()
+}
+
 /// A character that moves nothing on a terminal: control characters, and those that turn the direction of writing, could
 /// make a message say what it does not.
 fn fit(character: char) -> char {

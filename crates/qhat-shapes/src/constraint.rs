@@ -4,7 +4,7 @@ use crate::gears;
 use crate::list::Shapes;
 use crate::shape::{Shape, ShapeKind, value};
 use qhat::{
-    Anchor, Obstacle, Constraint, Lengths, Limits, Line, OnCircle, OnLine, OnPlane, OnSphere, Plane, Relation, Driven,
+    Anchor, Constraint, Driven, Lengths, Limits, Line, Obstacle, OnCircle, OnLine, OnPlane, OnSphere, Plane, Relation,
     Surface,
 };
 

@@ -1,6 +1,6 @@
 //! One thing to draw.
 
-use qhat::{Anchor, DrivenPoint, ParticleId, Driven};
+use qhat::{Anchor, Driven, DrivenPoint, ParticleId};
 
 /// The constraint or force that a shape belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

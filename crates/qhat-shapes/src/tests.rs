@@ -3,8 +3,8 @@
 use super::*;
 use ShapeKind::{DrivenRod, Ground, Line, Rod, Rope, Strut, Tie, Wheel, Wire};
 use qhat::{
-    Angle, Area, Obstacle, Constraint, CubicSpring, Curve, Dimension, Distance, Expression, Gears, Gravity, Lengths,
-    Limits, Nail, OnCurve, OnLine, OnSphere, Particle, ParticleId, Purpose, Relation, Driven, Scope, Spring, Surface,
+    Angle, Area, Constraint, CubicSpring, Curve, Dimension, Distance, Driven, Expression, Gears, Gravity, Lengths,
+    Limits, Nail, Obstacle, OnCurve, OnLine, OnSphere, Particle, ParticleId, Purpose, Relation, Scope, Spring, Surface,
     System,
 };
 

@@ -1,16 +1,13 @@
-//! The applied forces of every kind: Q against its formula, its conservative part against differences of the potential, and
-//! the power of the rest against F·v.
+//! The applied forces of every kind: Q against its formula, its conservative part against differences of the potential,
+//! and the power of the rest against F·v.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, dot, norm};
+use crate::systems::random::{Random, dimension};
 use qhat::{
     Drag, Force, Gravity, Integrator, MouseSpring, Particle, ParticleId, PointForce, Simulation, Spring, State,
 };
 use qhat::{System, evaluate, step};
-use systems::dense::{assert_all_close, assert_close, dot, norm};
-use systems::random::{Random, dimension};
 
 const STATES: usize = 40;
 

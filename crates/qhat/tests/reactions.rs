@@ -1,15 +1,12 @@
 //! The constraint force Q̂: it does no work on legal motion, changes no momentum, and has the sign that is promised.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, dot};
+use crate::systems::random::{Random, web};
 use qhat::{
     Dimension, Distance, DistanceForm, Nail, NailForm, Particle, ParticleId, PointForce, Settings, State, System,
 };
 use qhat::{Terms, Workspace, evaluate, project};
-use systems::dense::{assert_all_close, assert_close, dot};
-use systems::random::{Random, web};
 
 /// Puts a random state onto C = 0 and Ċ = 0.
 fn legal(system: &System, state: &mut State) {
@@ -35,7 +32,8 @@ fn constraint_force_does_no_work_on_legal_motion() {
             tried += 1;
             let terms = evaluate(&system, &state);
             let power = dot(&terms.constraint_forces, &terms.velocities);
-            // Q̂·q̇ = λ·Ċ, and the projection leaves roundoff of speeds of about 1 m/s as Ċ; stiff trusses multiply it by 1e3.
+            // Q̂·q̇ = λ·Ċ, and the projection leaves roundoff of speeds of about 1 m/s as Ċ; stiff trusses multiply it
+            // by 1e3.
             assert_close("Q̂·q̇", power, 0.0, 1e-12 * size(&terms));
         }
     }

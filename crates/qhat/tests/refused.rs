@@ -1,8 +1,7 @@
-//! What is refused: numbers out of range, names that do not exist, motions that are lost. Every refusal is a typed error
-//! with a sentence that names the culprit, and the last good state stays.
+//! What is refused: numbers out of range, names that do not exist, motions that are lost. Every refusal is a typed
+//! error with a sentence that names the culprit, and the last good state stays.
 
-mod systems;
-
+use crate::systems;
 use qhat::{
     BuildError, Dimension, Distance, Drag, Feedback, Gravity, Integrator, MouseSpring, Nail, Particle, ParticleId,
     PointForce, Settings, SettingsError, Simulation, Spring, StepError, System, SystemBuilder, Workspace, step,

@@ -18,6 +18,7 @@ use interrupt::Interrupt;
 use origin::Origin;
 use progress::Progress;
 use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
+use status::Status;
 use std::process::ExitCode;
 use std::time::Instant;
 use summary::{Summary, Tally};

@@ -6,6 +6,7 @@ use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::status::Status;
+use crate::status::Status;
 use qhat::{Feedback, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;

@@ -1,8 +1,7 @@
-//! How rattle chooses its substeps: short enough to be stable, to turn no rod far and to resolve the damping, equal within
-//! a frame, and each begun from a good guess of λ.
+//! How rattle chooses its substeps: short enough to be stable, to turn no rod far and to resolve the damping, equal
+//! within a frame, and each begun from a good guess of λ.
 
-mod systems;
-
+use crate::systems;
 use qhat::{Dimension, Distance, Drag, Integrator, Particle, Settings, StepReport, System, Workspace, step};
 
 /// Frames of h under a tolerance that allows everything, so that nothing but the bounds under test limits the substep.
@@ -39,8 +38,8 @@ fn substeps_are_stable_under_tension() {
     }
 }
 
-/// A rod that spins freely about a fixed end: T = m ω² L, so stability asks for hω < 1.4/√2 or so of a turn's radian, and
-/// a substep may not turn it by more than about a third of a radian.
+/// A rod that spins freely about a fixed end: T = m ω² L, so stability asks for hω < 1.4/√2 or so of a turn's radian,
+/// and a substep may not turn it by more than about a third of a radian.
 #[test]
 fn substeps_turn_no_rod_far() {
     for speed in [50.0, 500.0] {
@@ -85,7 +84,8 @@ fn substeps_of_a_frame_are_alike() {
     assert!(worst > 0.25, "the smallest substep was {worst} of the mean");
 }
 
-/// λ of the last substep is the guess for the next: Newton then needs one to two iterations, of which one is always made.
+/// λ of the last substep is the guess for the next: Newton then needs one to two iterations, of which one is always
+/// made.
 #[test]
 fn multipliers_of_the_last_substep_start_the_next() {
     // Counted, with a little room; half of λ as a guess needs one more in each.

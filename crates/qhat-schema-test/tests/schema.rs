@@ -3,12 +3,14 @@
 
 use qhat_scene::{Format, SceneErrors, json_schema, load, shipped};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 
 fn every_key() -> [Value; 3] {
-    let texts =
-        [include_str!("every-key.toml"), include_str!("every-key-in-space.toml"), include_str!("every-contact.toml")];
-    texts.map(|text| toml::from_str(text).unwrap())
+    [
+        include_str!("../../qhat-scene/tests/every-key.toml"),
+        include_str!("../../qhat-scene/tests/every-key-in-space.toml"),
+        include_str!("../../qhat-scene/tests/every-contact.toml"),
+    ]
+    .map(|text| toml::from_str(text).unwrap())
 }
 
 fn read(scene: &Value) -> Result<(), SceneErrors> {
@@ -181,50 +183,4 @@ fn the_reader_and_the_schema_agree() {
             }
         }
     }
-}
-
-/// The keys of all tables of the schema.
-fn keys(schema: &Value, found: &mut BTreeSet<String>) {
-    match schema {
-        Value::Object(table) => {
-            if let Some(Value::Object(properties)) = table.get("properties") {
-                found.extend(properties.keys().cloned());
-            }
-            table.values().for_each(|value| keys(value, found));
-        }
-        Value::Array(list) => list.iter().for_each(|value| keys(value, found)),
-        _ => {}
-    }
-}
-
-#[test]
-fn the_guide_and_the_test_scene_name_every_key() {
-    let mut known = BTreeSet::new();
-    keys(&json_schema(), &mut known);
-    let guide = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene-file.md")).unwrap();
-    let mut places = Vec::new();
-    every_key().iter().for_each(|scene| collect_places(scene, String::new(), &mut places));
-    for key in known {
-        assert!(guide.contains(&format!("`{key}`")), "docs/scene-file.md does not name `{key}`");
-        assert!(places.iter().any(|place| place.ends_with(&format!("/{key}"))), "every-key.toml lacks `{key}`");
-    }
-}
-
-#[test]
-fn every_key_is_described() {
-    fn walk(schema: &Value) {
-        let Value::Object(table) = schema else {
-            if let Value::Array(list) = schema {
-                list.iter().for_each(walk);
-            }
-            return;
-        };
-        if let Some(Value::Object(properties)) = table.get("properties") {
-            for (key, property) in properties {
-                assert!(key == "kind" || property.get("description").is_some(), "`{key}` has no words");
-            }
-        }
-        table.values().for_each(walk);
-    }
-    walk(&json_schema());
 }

@@ -1,11 +1,10 @@
-//! One step of each explicit method by its formula, bit for bit, from the accelerations of `evaluate`; and what each does to
-//! the energy of an oscillator.
+//! One step of each explicit method by its formula, bit for bit, from the accelerations of `evaluate`; and what each
+//! does to the energy of an oscillator.
 
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close};
+use crate::systems::random::{Random, web};
 use qhat::{Dimension, Integrator, MouseSpring, Particle, State, System, Workspace, evaluate, step};
-use systems::dense::{assert_all_close, assert_close};
-use systems::random::{Random, web};
 
 const H: f64 = 1e-3;
 
