@@ -1,4 +1,4 @@
-//! Trajectories on disk: one row of every array a frame, written as it comes, in place only when all of it is there.
+//! Trajectories on disk: each frame adds one row to every array. The output gets its name when it is complete.
 
 mod csv;
 mod npy;
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use qhat::{System, Terms};
 use std::path::Path;
 
-/// What the ending of a file name asks for.
+/// The format of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     /// Arrays for NumPy.
@@ -22,6 +22,9 @@ pub(crate) enum Format {
 
 impl Format {
     /// The format that the ending of a file name stands for.
+    ///
+    /// # Errors
+    /// Another ending.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         match ending.as_deref() {
@@ -58,7 +61,7 @@ impl Recorder {
         }
     }
 
-    /// Puts the finished files in place; `origin` is a line of JSON that says where the numbers come from.
+    /// Puts the finished files in place, with the origin, a line of JSON.
     pub(crate) fn finish(self, origin: &str) -> Result<(), Failure> {
         match self {
             Recorder::Npz(recorder) => recorder.finish(origin),

@@ -1,4 +1,4 @@
-//! Where a trajectory goes: never over a file that exists unless told so, and never half of it.
+//! The output file of a trajectory. It replaces an existing file only with --force, and appears only when complete.
 
 use super::Format;
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// The file asked for, and whether it may be replaced.
+/// The file asked for, its format, and whether it may be replaced.
 #[derive(Debug)]
 pub(crate) struct Target {
     path: PathBuf,
@@ -16,7 +16,10 @@ pub(crate) struct Target {
 }
 
 impl Target {
-    /// Checks name and place before anything is computed.
+    /// Checks the name and the folder, before anything is computed.
+    ///
+    /// # Errors
+    /// An unknown ending, a missing folder, a file that exists without `force`.
     pub(crate) fn new(path: &Path, force: bool) -> Result<Self, Failure> {
         let target = Target { path: path.to_owned(), format: Format::of(path)?, force };
         if !target.folder().is_dir() {
@@ -41,26 +44,26 @@ impl Target {
         &self.path
     }
 
-    /// The file that tells the origin of a CSV, which has no place for it inside.
+    /// The file beside a CSV that holds its origin.
     pub(crate) fn origin_path(&self) -> PathBuf {
         let mut name = self.path.clone().into_os_string();
         name.push(".json");
         name.into()
     }
 
-    /// A file without a name on the disk of the target, gone when it is closed.
+    /// A file without a name in the folder of the target, removed when it is closed.
     pub(crate) fn scratch(&self) -> Result<File, Failure> {
         tempfile::tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
     }
 
-    /// A file beside the target that [`Target::put`] can rename; removed if that never happens.
+    /// A temporary file beside the target, for [`Target::put`]; removed if it is not renamed.
     pub(crate) fn temporary(&self) -> Result<NamedTempFile, Failure> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".qhat-").suffix(".part");
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // As any new file of the user, less the umask; without this it would be for the user's eyes only.
+            // The permissions of a new file, less the umask; by default only the user could read a temporary file.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         builder.tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
@@ -78,7 +81,7 @@ impl Target {
         self.put_as(file, &self.origin_path())
     }
 
-    /// What to say when writing fails.
+    /// The failure of a write.
     pub(crate) fn cannot_write(&self, error: &io::Error) -> Failure {
         Failure::io(format!("cannot write `{}`", self.path.display()), error)
     }
@@ -87,7 +90,7 @@ impl Target {
         let outcome = if self.force { file.persist(path) } else { file.persist_noclobber(path) };
         match outcome {
             Ok(_) => Ok(()),
-            // Made by someone else while this ran.
+            // Another process made the file during the run.
             Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => Err(exists(path)),
             Err(failed) => Err(self.cannot_write(&failed.error)),
         }
@@ -109,5 +112,5 @@ impl Target {
 }
 
 fn exists(path: &Path) -> Failure {
-    Failure::input(format!("`{}` exists; nothing was written. Use --force to write over it", path.display()))
+    Failure::input(format!("`{}` exists; nothing was written. Use --force to replace it", path.display()))
 }
