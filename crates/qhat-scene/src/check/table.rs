@@ -68,7 +68,9 @@ impl<'a> Checker<'a, '_, '_> {
                 continue;
             }
             // Under a misspelt key for the list of particles every id would be unknown.
-            self.has_gaps |= is_root;
+            if is_root {
+                self.has_gaps = true;
+            }
             let elsewhere = if is_root { misplaced::help(self.root, &entry.key) } else { None };
             let help = elsewhere.unwrap_or_else(|| match nearest(&entry.key, keys.iter().copied()) {
                 Some(key) => format!("did you mean `{key}`?"),
