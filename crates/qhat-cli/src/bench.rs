@@ -1,4 +1,4 @@
-//! `qhat bench`: what workloads of known shape cost on this machine, beside what they get wrong.
+//! `qhat bench`: the cost and the errors of workloads of known shape on this machine.
 
 use crate::arguments;
 use crate::failure::Failure;

@@ -1,7 +1,7 @@
-//! The `qhat` command: reads scenes, runs the engine, writes what came out. It computes no physics of its own.
+//! The `qhat` command: reads scenes, runs the engine, writes the results. It computes no physics of its own.
 //!
-//! Exit codes: 0 done, 1 the motion diverged or the constraints cannot hold (what was reached is written and marked),
-//! 2 bad input, 130 interrupted.
+//! Exit codes: 0 done, 1 the motion diverged or the constraints cannot hold (the frames reached are written, and the
+//! output is marked), 2 bad input, 130 interrupted.
 
 mod arguments;
 mod bench;
@@ -37,7 +37,7 @@ fn main() -> ExitCode {
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<ExitCode, Failure> {
-    // Into memory first: the generator itself would panic on a closed pipe.
+    // The script goes into memory first, because the generator would panic on a closed pipe.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "qhat", &mut script);
     print::bytes(&script)?;

@@ -77,6 +77,8 @@ fn numbers_out_of_range_are_refused() {
     run(&["--frames", "-1"]).refused("invalid value '-1' for '--frames <N>'");
     run(&["--duration", "1e300"]).refused("ask for fewer with --frames");
     run(&["--frames", "18446744073709551615"]).refused("ask for fewer with --frames");
+    run(&["--tolerance", "0"]).refused("tolerance must be");
+    run(&["--tolerance", "nan"]).refused("tolerance must be");
     run(&["--integrator", "magic"]).refused("possible values: euler");
     run(&["--force"]).refused("--output");
     folder.qhat(&[]).refused("Usage: qhat");

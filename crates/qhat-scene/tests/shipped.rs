@@ -19,18 +19,30 @@ fn the_list_is_the_folder() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let files: BTreeSet<String> = files.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
+    // A listed scene without a file does not compile.
     let listed: BTreeSet<String> = shipped().iter().map(|scene| scene.name.to_owned()).collect();
-    for name in files.difference(&listed) {
-        panic!("scenes/{name}.toml is in no list: add it under a heading in crates/qhat-scene/src/shipped.rs");
-    }
-    for name in listed.difference(&files) {
-        panic!("`{name}` is a shipped scene without a file: add scenes/{name}.toml, or take it from the list");
-    }
-    assert_eq!(listed.len(), shipped().len(), "a scene is listed twice");
-    for scene in shipped() {
-        assert!(!scene.group.is_empty(), "`{}` stands under no heading", scene.name);
-    }
+    let missing: Vec<&String> = files.difference(&listed).collect();
+    assert!(
+        missing.is_empty(),
+        "in no list: {missing:?}; add them under a heading in crates/qhat-scene/src/shipped.rs"
+    );
+    let twice = shipped().iter().enumerate();
+    let twice: Vec<&str> = twice
+        .filter(|(index, scene)| shipped()[..*index].iter().any(|other| other.name == scene.name))
+        .map(|(_, scene)| scene.name)
+        .collect();
+    assert!(twice.is_empty(), "listed twice in crates/qhat-scene/src/shipped.rs: {twice:?}");
     assert!(listed.len() >= 12);
+}
+
+/// Lists show the scenes heading by heading, so the scenes of a heading stand together.
+#[test]
+fn every_heading_is_there_once() {
+    let mut headings: Vec<&str> = shipped().iter().map(|scene| scene.group).collect();
+    headings.dedup();
+    let different: BTreeSet<&str> = headings.iter().copied().collect();
+    assert_eq!(headings.len(), different.len(), "{headings:?}");
+    assert!(headings.iter().all(|heading| !heading.is_empty()));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Where numbers come from: enough to make them again, and to know how the run ended.
+//! The origin of a trajectory: the scene and settings from which it can be computed again, and the end of the run.
 
 use super::Stop;
 use super::frames::Frames;
@@ -6,12 +6,11 @@ use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::status::Status;
-use crate::status::Status;
 use qhat::{Feedback, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
 
-/// Written with every trajectory.
+/// The origin, written with every trajectory.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Origin {
     qhat: &'static str,
@@ -22,21 +21,21 @@ pub(crate) struct Origin {
     scene_hash: String,
     dimension: usize,
     pub(crate) integrator: &'static str,
-    /// \[s\].
+    /// The step or frame \[s\].
     pub(crate) h: f64,
     tolerance: f64,
     constraint_tolerance: f64,
     feedback: FeedbackInUse,
-    /// As asked for \[s\].
+    /// The duration asked for \[s\].
     pub(crate) duration: f64,
-    /// As asked for, the start not counted.
+    /// The number of frames asked for, without the start.
     frames_asked: usize,
     /// t of the last good state \[s\].
     pub(crate) time_reached: f64,
     warnings: Vec<String>,
 }
 
-/// ks, kd, diagonal drag and elasticity, where the integrator uses them.
+/// The feedback that the integrator uses; zeros under an integrator that projects.
 #[derive(Clone, Debug, Serialize)]
 struct FeedbackInUse {
     ks: f64,
@@ -70,7 +69,10 @@ impl Origin {
         }
     }
 
-    /// Notes how it ended.
+    /// Notes the end of the run.
+    ///
+    /// # Errors
+    /// Settings that the engine refused in the middle of the run.
     pub(super) fn close(&mut self, tally: &Tally, stopped: Option<&Stop>) -> Result<(), Failure> {
         self.time_reached = tally.time_reached;
         self.warnings.clone_from(&tally.warnings);

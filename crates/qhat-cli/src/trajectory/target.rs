@@ -1,4 +1,4 @@
-//! Where a trajectory goes, and the file that tells its origin.
+//! The output file of a trajectory. It replaces an existing file only with --force, and appears only when complete.
 
 use super::Format;
 use crate::failure::Failure;
@@ -16,7 +16,10 @@ pub(crate) struct Target {
 }
 
 impl Target {
-    /// Checks name and place before anything is computed.
+    /// Checks the name and the folder, before anything is computed.
+    ///
+    /// # Errors
+    /// An unknown ending, a missing folder, a file that exists without `force`.
     pub(crate) fn new(path: &Path, force: bool) -> Result<Self, Failure> {
         let format = Format::of(path)?;
         let companions = match format {
@@ -34,12 +37,12 @@ impl Target {
         self.output.path()
     }
 
-    /// A file without a name on the disk of the target, gone when it is closed.
+    /// A file without a name in the folder of the target, removed when it is closed.
     pub(crate) fn scratch(&self) -> Result<File, Failure> {
         self.output.scratch()
     }
 
-    /// A file beside the target that [`Target::put`] can rename; removed if that never happens.
+    /// A temporary file beside the target, for [`Target::put`]; removed if it is not renamed.
     pub(crate) fn temporary(&self) -> Result<NamedTempFile, Failure> {
         self.output.temporary()
     }
@@ -56,7 +59,7 @@ impl Target {
         self.output.put_as(file, &origin_path(self.path()))
     }
 
-    /// What to say when writing fails.
+    /// The failure of a write.
     pub(crate) fn cannot_write(&self, error: &io::Error) -> Failure {
         self.output.cannot_write(error)
     }

@@ -1,5 +1,6 @@
-//! `[[constraints]]` that hold what a shape contains.
+//! `[[constraints]]` that hold an enclosed area or volume.
 
+use super::constraint::named;
 use super::{Driven, Id, Name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,22 +9,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Area {
-    /// Its name in reports; `area(a)` after the first corner if left out.
+    /// The name of the constraint in reports; `area(a)` after the first corner if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
     /// The ids of the corners in order, three or more.
     #[schemars(length(min = 3))]
     pub(crate) corners: Vec<Id>,
-    /// The area [m²], positive where the corners run counterclockwise, or an expression of t; the area at the start if left out.
+    /// The area [m²], positive where the corners run counterclockwise, or an expression of t; the area at the start if
+    /// left out.
     #[serde(default)]
     pub(crate) area: Option<Driven>,
 }
+
+named!(Area, it => format!("area({})", it.corners[0].0));
 
 /// A closed surface that keeps its volume, in space.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Volume {
-    /// Its name in reports; `volume(a)` after the first corner if left out.
+    /// The name of the constraint in reports; `volume(a)` after the first corner if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
     /// The ids of the corners of each face, counterclockwise as seen from outside; four faces or more, closed.
@@ -33,3 +37,5 @@ pub(crate) struct Volume {
     #[serde(default)]
     pub(crate) volume: Option<Driven>,
 }
+
+named!(Volume, it => format!("volume({})", it.faces[0][0].0));

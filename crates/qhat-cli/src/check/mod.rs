@@ -1,15 +1,18 @@
-//! `qhat check`: whether a scene is valid, and what its constraints leave free.
+//! `qhat check`: the errors of a scene, or its degrees of freedom, rank and states of self-stress.
 //!
 //! ```text
 //! degrees of freedom    = coordinates of free particles − rank A
-//! states of self-stress = rows on free particles that take part − rank A
+//! states of self-stress = active rows on free particles − rank A
 //! ```
+
+mod components;
 
 use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
-use qhat::{Component, FactorMethod, Integrator, Settings, Simulation, Solver, Terms, evaluate};
+use components::Components;
+use qhat::{Integrator, Settings, Simulation, Solver, Terms, evaluate};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -43,7 +46,7 @@ fn invalid(errors: &SceneErrors) -> serde_json::Value {
     json!({ "valid": false, "errors": list.collect::<Vec<_>>(), "more_errors": errors.more })
 }
 
-/// What a check of a valid scene finds.
+/// The findings of a check of a valid scene.
 #[derive(Debug, Serialize)]
 struct Findings {
     valid: bool,
@@ -54,28 +57,29 @@ struct Findings {
     rods: usize,
     rows: usize,
     rows_on_free_particles: usize,
-    /// Of those, how many take no part at the start: contacts that are open.
+    /// Rows on free particles that are inactive at the start, because their contacts are open.
     open_rows: usize,
-    /// max |C| where the file puts the particles.
+    /// max |C| at the positions in the file.
     max_residual_at_start: f64,
     worst_row_at_start: Option<String>,
     consistent_at_start: bool,
-    /// Whether there are positions near by at which every constraint holds, and how far they are \[m\].
+    /// Whether every constraint holds at some positions near the start.
     feasible: bool,
+    /// The largest distance of a particle from its position in the file to those positions \[m\].
     start_moved: Option<f64>,
-    /// At those positions, and so for all that follows; none where A is singular and too large to be counted.
+    /// The rank of A at those positions, as are all numbers below; none where A is singular and too large to count.
     rank: Option<usize>,
     degrees_of_freedom: Option<usize>,
     states_of_self_stress: Option<usize>,
     redundant: Option<bool>,
-    /// What the rows fall into, components alike told once.
+    /// The connected components of A; equal components are counted in one entry.
     components: Vec<Components>,
-    /// What a run of the scene would begin with; none where its first frame fails.
+    /// The first frame of a run of the scene; none where that frame fails.
     first_frame: Option<Beginning>,
     warnings: Vec<String>,
 }
 
-/// Who carries the first frame, and by which path to the multipliers.
+/// The integrator and the solver of the first frame.
 #[derive(Debug, Serialize)]
 struct Beginning {
     integrator: &'static str,
@@ -97,52 +101,7 @@ impl Beginning {
     }
 }
 
-/// Connected components of A that are alike.
-#[derive(Debug, Serialize)]
-struct Components {
-    count: usize,
-    kind: &'static str,
-    rows: usize,
-    hubs: usize,
-    method: &'static str,
-    entries_of_l: u64,
-    factor_flops: u64,
-    solve_flops: u64,
-    memory_bytes: u64,
-}
-
-impl Components {
-    fn alike(components: &[Component]) -> Vec<Self> {
-        let mut sorted: Vec<&Component> = components.iter().collect();
-        sorted.sort_by_key(|c| (std::cmp::Reverse(c.rows), c.kind.name(), c.hubs, c.factor_flops));
-        let groups = sorted.chunk_by(|a, b| a == b);
-        groups
-            .map(|group| Components {
-                count: group.len(),
-                kind: group[0].kind.name(),
-                rows: group[0].rows,
-                hubs: group[0].hubs,
-                method: group[0].method.name(),
-                entries_of_l: group[0].entries,
-                factor_flops: group[0].factor_flops,
-                solve_flops: group[0].solve_flops,
-                memory_bytes: group[0].memory,
-            })
-            .collect()
-    }
-
-    fn in_words(&self) -> String {
-        let how_many = if self.count == 1 { String::new() } else { format!("{} times ", self.count) };
-        let hubs = if self.hubs == 0 { String::new() } else { format!(" with {}", count(self.hubs, "hub")) };
-        let mut words = format!("{how_many}{}{hubs}, {}: {}", self.kind, count(self.rows, "row"), self.method);
-        if self.method != FactorMethod::Dense.name() {
-            words += &format!(", {} entries of L, {} operations to factor", self.entries_of_l, self.factor_flops);
-        }
-        words
-    }
-}
-
-/// Kinds of components that are listed; of the smaller ones only the number is said.
+/// The most entries of components that are printed; of the smaller components only the number is printed.
 const LISTED: usize = 4;
 
 impl Findings {
@@ -150,12 +109,13 @@ impl Findings {
         let system = &scene.system;
         let start = evaluate(system, &scene.state);
         let relative = |row: usize| start.residual[row].abs() / system.row_scales()[row];
-        // A row that gives way is not violated by doing so.
+        // The residual of a compliant row is its load, not an error.
         let rigid = || (0..system.row_count()).filter(|&row| system.is_rigid(row));
         let worst = rigid().max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
         let consistent = worst.is_none_or(|row| relative(row) <= scene.settings.constraint_tolerance);
 
-        // An integrator that projects finds the nearest start at which all holds, and sees A bare of diagonal drag; this one takes contacts, too.
+        // An integrator that projects finds the nearest consistent start, and uses A without diagonal drag. DOP853 is
+        // the one that finds events, too.
         let settings = Settings { integrator: Integrator::Dop853, ..scene.settings };
         let simulation = Simulation::new(system.clone(), scene.state.clone(), settings);
         let mut warnings: Vec<String> = Vec::new();
@@ -174,7 +134,7 @@ impl Findings {
         let on_free = || rigid().filter(|&row| is_on_free_particle(&terms, row));
         let open_rows = on_free().filter(|&row| terms.is_open[row]).count();
         let rows = on_free().count() - open_rows;
-        // Where the constraints cannot hold, the rank is that of no configuration the system can be in.
+        // Where the constraints cannot hold, the system has no configuration whose rank could be counted.
         let rank = terms.rank.filter(|_| feasible);
         Findings {
             valid: true,
@@ -194,7 +154,7 @@ impl Findings {
             rank,
             degrees_of_freedom: rank.map(|rank| coordinates.saturating_sub(rank)),
             states_of_self_stress: rank.map(|rank| rows.saturating_sub(rank)),
-            // Where the rank is not counted, that is because A is singular.
+            // The rank is not counted only where A is singular.
             redundant: feasible.then(|| rank.is_none_or(|rank| rank < rows)),
             components: Components::alike(system.components()),
             first_frame: if feasible { Beginning::of(scene) } else { None },
@@ -249,7 +209,7 @@ impl Findings {
                 format!("`{row}` is the farthest off; every constraint holds after moves of up to {moved:.3e} m")
             }
             (Some(row), None) => {
-                format!("`{row}` is the farthest off, and no moves near by make every constraint hold")
+                format!("`{row}` is the farthest off, and at no positions near by every constraint holds")
             }
         }
     }
@@ -262,8 +222,8 @@ fn is_on_free_particle(terms: &Terms, row: usize) -> bool {
 fn redundancy(states_of_self_stress: usize) -> String {
     match states_of_self_stress {
         0 => "no row is redundant, so every tension is unique".into(),
-        1 => "one row more than needed; one state of self-stress, so some tensions are not unique".into(),
-        k => format!("{k} rows more than needed; {k} states of self-stress, so some tensions are not unique"),
+        1 => "one redundant row; one state of self-stress, so some tensions are not unique".into(),
+        k => format!("{k} redundant rows; {k} states of self-stress, so some tensions are not unique"),
     }
 }
 

@@ -1,42 +1,48 @@
-//! One place of the schema, references resolved, asked in the words of the checker.
+//! A node of the schema with its reference resolved, and the questions that the checker asks of it.
 
 use crate::suggest::listed;
 use serde_json::{Map, Value as Json};
 
-/// A schema and, where it refers to another, that one. Keywords beside a reference come first.
+/// A node of the schema and, where it is a reference, the node that it refers to. Keywords beside a reference come
+/// first.
 #[derive(Clone, Copy)]
-pub(super) struct Meaning<'a> {
-    pub(super) schema: &'a Json,
+pub(super) struct SchemaNode<'a> {
+    node: &'a Json,
     target: Option<&'a Json>,
-    /// The list that this is an entry of, which has the words for it.
+    /// The list whose entries this node describes; the description of the list holds for its entries.
     list: Option<&'a Json>,
 }
 
-impl<'a> Meaning<'a> {
-    pub(super) fn of(root: &'a Json, schema: &'a Json) -> Self {
-        let pointer = schema.get("$ref").and_then(Json::as_str).and_then(|reference| reference.strip_prefix('#'));
-        Meaning { schema, target: pointer.and_then(|pointer| root.pointer(pointer)), list: None }
+impl<'a> SchemaNode<'a> {
+    pub(super) fn of(root: &'a Json, node: &'a Json) -> Self {
+        let pointer = node.get("$ref").and_then(Json::as_str).and_then(|reference| reference.strip_prefix('#'));
+        SchemaNode { node, target: pointer.and_then(|pointer| root.pointer(pointer)), list: None }
     }
 
-    /// What the entries of this list are.
+    /// The schema of the entries of this list.
     pub(super) fn entry(&self, root: &'a Json) -> Option<Self> {
-        Some(Meaning { list: Some(self.list.unwrap_or(self.schema)), ..Meaning::of(root, self.get("items")?) })
+        Some(SchemaNode { list: Some(self.list.unwrap_or(self.node)), ..SchemaNode::of(root, self.get("items")?) })
     }
 
-    /// What the values of this table are, where its keys are names that the scene gives.
+    /// The schema of the values of this table, where its keys are names that the scene gives.
     pub(super) fn names(&self, root: &'a Json) -> Option<Self> {
         let inner = self.get("additionalProperties").filter(|inner| inner.is_object())?;
-        Some(Meaning { list: Some(self.schema), ..Meaning::of(root, inner) })
+        Some(SchemaNode { list: Some(self.node), ..SchemaNode::of(root, inner) })
     }
 
-    /// What else it may be, where values of more than one type are allowed.
+    /// The schemas of the allowed types, where there are several.
     pub(super) fn alternatives(&self) -> impl Iterator<Item = Self> + use<'a> {
-        let words = self.schema;
-        self.list("anyOf").map(move |schema| Meaning { schema, target: None, list: Some(words) })
+        let words = self.node;
+        self.list("anyOf").map(move |node| SchemaNode { node, target: None, list: Some(words) })
+    }
+
+    /// Whether this is the node at this place of the schema.
+    pub(super) fn is(&self, node: &Json) -> bool {
+        std::ptr::eq(self.node, node)
     }
 
     fn get(&self, keyword: &str) -> Option<&'a Json> {
-        self.schema.get(keyword).or_else(|| self.target?.get(keyword))
+        self.node.get(keyword).or_else(|| self.target?.get(keyword))
     }
 
     pub(super) fn text(&self, keyword: &str) -> &'a str {
@@ -68,21 +74,22 @@ impl<'a> Meaning<'a> {
         self.list("oneOf").filter_map(|branch| Some((branch.pointer("/properties/kind/const")?.as_str()?, branch)))
     }
 
-    /// Whether it is a list with one number for each dimension.
+    /// Whether this is a list with one number for each dimension.
     pub(super) fn is_vector(&self) -> bool {
         self.text("x-length") == "dimension"
     }
 
-    /// Whether it is a number or the text of an expression.
+    /// Whether this is a number or the text of an expression.
     pub(super) fn is_number_or_text(&self) -> bool {
         self.list("type").filter_map(Json::as_str).eq(["number", "string"])
     }
 
+    /// Whether this is a table whose `kind` determines its keys.
     pub(super) fn is_tagged(&self) -> bool {
         self.kinds().next().is_some()
     }
 
-    /// The texts a value may be, where only some are allowed.
+    /// The allowed texts, where the schema lists them.
     pub(super) fn choices(&self) -> Option<Vec<&'a str>> {
         let documented = self.list("oneOf").filter_map(|branch| branch.get("const"));
         let choices: Vec<&str> = self.list("enum").chain(documented).filter_map(Json::as_str).collect();
@@ -104,7 +111,7 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// What a key is, in the words of the schema, with what it may be and what it is if left out.
+    /// What a key is: the description in the schema, the allowed texts, and the default.
     pub(super) fn help(&self, name: &str) -> String {
         let name = name.split('[').next().unwrap_or(name);
         let of_list = self.list.and_then(|list| list.get("description")).and_then(Json::as_str);
