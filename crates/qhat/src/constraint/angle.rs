@@ -17,7 +17,7 @@
 //! two arms in line are two conditions and not one: keep α inside. The numbers are then undefined, and a step says so.
 
 use super::arms::Arms;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, norm, raised, scaled};
@@ -61,24 +61,14 @@ impl Angle {
 }
 
 impl Smooth for Angle {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.arms.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         let (u, w): ([N; D], [N; D]) = match self.has_direction() {
-            true => (std::array::from_fn(|k| N::constant(self.direction[k])), self.arms.vector(0, x)),
-            false => (self.arms.vector(0, x), self.arms.vector(1, x)),
+            true => (std::array::from_fn(|k| N::constant(self.direction[k])), self.arms.vector(0, at)),
+            false => (self.arms.vector(0, at), self.arms.vector(1, at)),
         };
         let across = cross(raised(u), raised(w));
         let [zero, one] = [0.0, 1.0].map(N::constant);
@@ -88,7 +78,7 @@ impl Smooth for Angle {
             let sine = norm(across);
             (sine, across.map(|component| component / sine))
         };
-        let (angle, rate) = self.angle.at(t);
+        let (angle, rate) = self.angle.at(at.t);
         let C = within_half_a_turn(N::atan2(sine, dot(u, w)) - angle);
         let turned = |arm: [N; D], sign: f64| -> [N; D] {
             let turned = cross(n, raised(arm));
@@ -96,7 +86,7 @@ impl Smooth for Angle {
         };
         let is_last = |arm: usize| arm + 1 == self.arms.count();
         self.arms.spread(|arm| if is_last(arm) { turned(w, 1.0) } else { turned(u, -1.0) }, gradient);
-        (C, -rate)
+        Residual { C, C_t: -rate }
     }
 
     fn scale(&self, _: f64) -> f64 {

@@ -9,7 +9,7 @@
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::moment::moment;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, minus};
 use crate::space::ParticleId;
 
@@ -40,18 +40,12 @@ impl Smooth for Direction {
         [self.a, self.b].get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (u, rate) = follow(&self.along, t);
-        let (C, by_u, by_w) = moment(row, u, minus(x(1), x(0)));
-        gradient(by_w.map(|g| -g));
-        gradient(by_w);
-        (C, dot(by_u, rate))
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (u, rate) = follow(&self.along, at.t);
+        let (C, by_u, by_w) = moment(row, u, minus(at.x(1), at.x(0)));
+        gradient.push(by_w.map(|g| -g));
+        gradient.push(by_w);
+        Residual { C, C_t: dot(by_u, rate) }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -24,7 +24,7 @@
 
 use super::angle::within_half_a_turn;
 use super::arms::Arms;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::{Number, dot};
@@ -103,30 +103,18 @@ impl Gears {
 }
 
 impl Smooth for Gears {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        crate::allowed::only_in(2, dimension)
-    }
+    const ONLY_IN: Option<usize> = Some(2);
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.arms.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (angle, rate) = self.angle.at(t);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (angle, rate) = self.angle.at(at.t);
         let way = |k: [f64; 2]| -> [N; D] { std::array::from_fn(|i| N::constant(k[i])) };
         let mut sum = -angle;
         for (arm, part) in self.parts.iter().enumerate() {
-            let d = self.arms.vector(arm, x);
+            let d = self.arms.vector(arm, at);
             sum = sum
                 + match *part {
                     Part::Turn(z) => N::atan2(d[1], d[0]).times(z.into()),
@@ -135,14 +123,14 @@ impl Smooth for Gears {
         }
         let slope = |arm: usize| match self.parts[arm] {
             Part::Turn(z) => {
-                let d = self.arms.vector(arm, x);
+                let d = self.arms.vector(arm, at);
                 let factor = N::constant(z.into()) / dot(d, d);
                 std::array::from_fn(|i| if i == 0 { -(factor * d[1]) } else { factor * d[0] })
             }
             Part::Way(k) => way(k),
         };
         self.arms.spread(slope, gradient);
-        (within_half_a_turn(sum), -rate)
+        Residual { C: within_half_a_turn(sum), C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -109,16 +109,13 @@ impl<const D: usize> RowWriter<'_, D> {
         self.put(C, Cd, gamma, blocks);
     }
 
-    /// One row whose blocks come one at a time: `fill` is told which particles they belong to and where to put them, and returns
+    /// One row whose blocks `fill` writes: it gets the particles of the row and room for their blocks, D numbers each, and returns
     /// C, Ċ, γ and C_t.
-    pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut dyn FnMut(Point<D>)) -> [f64; 4]) {
+    pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut [f64]) -> [f64; 4]) {
         let Jacobian { layout, blocks, .. } = &mut self.rows.J;
         let entries = layout.start[self.row]..layout.start[self.row + 1];
-        let mut places = blocks[entries.start * D..entries.end * D].chunks_exact_mut(D);
-        let [C, Cd, gamma, Ct] = fill(&layout.particle[entries.clone()], &mut |block| {
-            places.next().expect("a block for each particle").copy_from_slice(&block);
-        });
-        debug_assert!(places.next().is_none(), "a block for each particle");
+        let room = &mut blocks[entries.start * D..entries.end * D];
+        let [C, Cd, gamma, Ct] = fill(&layout.particle[entries.clone()], room);
         self.rows.C[self.row] = C;
         self.rows.Cd[self.row] = Cd;
         self.rows.gamma[self.row] = gamma;

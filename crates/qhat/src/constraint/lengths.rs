@@ -13,7 +13,7 @@
 //! curvature 1/|d| grows without bound, so that a load must not be pulled into its block.
 
 use super::arms::Arms;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::{Number, norm, scaled};
@@ -52,24 +52,14 @@ impl Lengths {
 }
 
 impl Smooth for Lengths {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.segments.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (total, rate) = self.total.at(t);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (total, rate) = self.total.at(at.t);
         let length = |segment: usize| {
-            let d = self.segments.vector(segment, x);
+            let d = self.segments.vector(segment, at);
             let is_point = d.iter().all(|component| component.value() == 0.0);
             if is_point { (N::constant(0.0), [N::constant(0.0); D]) } else { (norm(d), d) }
         };
@@ -82,7 +72,7 @@ impl Smooth for Lengths {
             if length.value() == 0.0 { d } else { scaled(N::constant(self.weights[segment]) / length, d) }
         };
         self.segments.spread(slope, gradient);
-        (C, -rate)
+        Residual { C, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

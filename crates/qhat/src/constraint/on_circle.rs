@@ -12,7 +12,7 @@
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
 use super::on_plane::height;
 use super::on_sphere::{beyond, check_radius};
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, dot, minus};
 use crate::space::ParticleId;
@@ -46,28 +46,22 @@ impl Smooth for OnCircle {
         [Some(self.particle), self.center.particle()].get(i).copied().flatten()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (p, pd) = self.center.at(|| x(1), t);
-        let d = minus(x(0), p);
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (p, pd) = self.center.at(|| at.x(1), at.t);
+        let d = minus(at.x(0), p);
         let (C, rd, n) = if row == 0 {
             let (C, _, axis) = height(std::array::from_fn(|k| N::constant(self.axis[k])), d);
             (C, N::constant(0.0), axis)
         } else {
-            let (r, rd) = self.radius.at(t);
+            let (r, rd) = self.radius.at(at.t);
             let (C, n) = beyond(d, r);
             (C, rd, n)
         };
-        gradient(n);
+        gradient.push(n);
         if self.center.particle().is_some() {
-            gradient(n.map(|g| -g));
+            gradient.push(n.map(|g| -g));
         }
-        (C, -dot(n, pd) - rd)
+        Residual { C, C_t: -dot(n, pd) - rd }
     }
 
     fn scale(&self, _: f64) -> f64 {

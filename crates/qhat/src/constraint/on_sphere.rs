@@ -12,7 +12,7 @@
 //! Fails at |d| = 0, where it takes the first axis for n, so that a projection can still pull the two apart.
 
 use super::anchor::{Anchor, check_different};
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, dot, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -53,29 +53,19 @@ pub(super) fn check_radius(radius: &Driven, what: &str) -> Result<(), String> {
 }
 
 impl Smooth for OnSphere {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         [Some(self.particle), self.center.particle()].get(i).copied().flatten()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (p, pd) = self.center.at(|| x(1), t);
-        let (r, rd) = self.radius.at(t);
-        let (C, n) = beyond(minus(x(0), p), r);
-        gradient(n);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (p, pd) = self.center.at(|| at.x(1), at.t);
+        let (r, rd) = self.radius.at(at.t);
+        let (C, n) = beyond(minus(at.x(0), p), r);
+        gradient.push(n);
         if self.center.particle().is_some() {
-            gradient(n.map(|g| -g));
+            gradient.push(n.map(|g| -g));
         }
-        (C, -dot(n, pd) - rd)
+        Residual { C, C_t: -dot(n, pd) - rd }
     }
 
     fn scale(&self, _: f64) -> f64 {

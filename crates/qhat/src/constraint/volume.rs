@@ -11,7 +11,7 @@
 //! that run along it in opposite directions: then neither C nor its gradient depends on the point places are counted from. Fails
 //! where all corners lie in one line or place: the gradient vanishes.
 
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, minus, plus, raised};
 use crate::space::ParticleId;
@@ -58,29 +58,17 @@ impl Volume {
 }
 
 impl Smooth for Volume {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        crate::allowed::only_in(3, dimension)
-    }
+    const ONLY_IN: Option<usize> = Some(3);
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.particles.get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         const SIXTH: f64 = 1.0 / 6.0;
-        let (volume, rate) = self.volume.at(t);
-        let origin = x(0);
-        let place = |i: usize| raised(minus(x(i), origin));
+        let (volume, rate) = self.volume.at(at.t);
+        let origin = at.x(0);
+        let place = |i: usize| raised(minus(at.x(i), origin));
         let mut six_fold = N::constant(0.0);
         for &[a, b, c] in &self.faces {
             six_fold = six_fold + dot(place(a), cross(place(b), place(c)));
@@ -90,9 +78,9 @@ impl Smooth for Volume {
             for &[b, c] in faces {
                 sum = plus(sum, cross(place(b), place(c)));
             }
-            gradient(std::array::from_fn(|k| sum[k].times(SIXTH)));
+            gradient.push(std::array::from_fn(|k| sum[k].times(SIXTH)));
         }
-        (six_fold.times(SIXTH) - volume, -rate)
+        Residual { C: six_fold.times(SIXTH) - volume, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {
