@@ -40,7 +40,7 @@ macro_rules! kinds {
 
 kinds! {
     Distance Nail Relation Lengths Angle Gears Area Volume Direction OnLine OnPlane OnSphere OnCircle OnCurve;
-    Limits Obstacle ExpressionConstraint
+    Limits Obstacle ExpressionConstraint Custom
 }
 
 const P: [ParticleId; 5] = [ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(3), ParticleId(4)];

@@ -87,7 +87,7 @@ fn add_facet(facet: &Facet, outlines: &mut Vec<Vec<ParticleId>>, marks: &mut Vec
 
 fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &mut Vec<Mark>) {
     match constraint {
-        Constraint::Distance(_) | Constraint::Nail(_) | Constraint::ExpressionConstraint(_) => (),
+        Constraint::Distance(_) | Constraint::Nail(_) | Constraint::ExpressionConstraint(_) | Constraint::Custom(_) => (),
         Constraint::Limits(limits) => add_limits(limits, marks),
         Constraint::Obstacle(barrier) => add_barrier(barrier, marks),
         Constraint::Relation(relation) => add_relation(relation, t, marks),
