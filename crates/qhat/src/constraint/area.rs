@@ -1,4 +1,4 @@
-//! Area: a polygon keeps its area, or one that follows a schedule A(t). What is inside is incompressible. In the plane.
+//! Area: a polygon keeps its area A(t), which may be driven. The content is incompressible. In the plane.
 //!
 //! ```text
 //! C = ½ Σ (x_i − x_0) × (x_{i+1} − x_0) − A(t)       [m²],  λ: the pressure inside [N/m]
@@ -6,8 +6,9 @@
 //! C_t = −Ȧ
 //! ```
 //!
-//! Positive where the corners run counterclockwise. Places count from x_0, so that a polygon far from the origin keeps its digits.
-//! Fails where all corners fall into one place: the gradient vanishes. Sides may cross; the sum then counts loops with their sign.
+//! A is positive where the corners run counterclockwise. Positions count from x_0, so that a polygon far from the
+//! origin keeps its digits. Sides may cross; the sum then counts each loop with its sign. Fails where all corners
+//! fall into one place, because the gradient vanishes there.
 
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
@@ -17,7 +18,7 @@ use crate::space::ParticleId;
 /// A polygon that keeps its area, in the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
-    /// Its corners in order, three or more, each particle once.
+    /// The corners in order, three or more, each particle once.
     pub corners: Vec<ParticleId>,
     /// A [m²], positive where the corners run counterclockwise.
     pub area: Driven,

@@ -1,4 +1,4 @@
-//! OnCircle: a particle on a circle in space, of radius r(t) about a point p(t) or another particle, across an axis.
+//! OnCircle: a particle on a circle in space, of radius r(t), about a point p(t) or another particle, across an axis.
 //!
 //! ```text
 //! d = x − p or x − x_p,   n = d/|d|
@@ -6,8 +6,9 @@
 //! C_1 = |d| − r,   J = nᵀ,    C_t = −n·ṗ − ṙ           (on_sphere.rs)
 //! ```
 //!
-//! Two rows [m], at right angles on the circle; λ are the forces along the axis and outwards [N]. Three dimensions only: in the plane a
-//! circle is OnSphere. Fails in the centre, as OnSphere does, and on the axis, where both rows pull the same way.
+//! Two rows [m], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards [N].
+//! Three dimensions only: in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
+//! where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
 use super::on_plane::height;

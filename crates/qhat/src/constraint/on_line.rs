@@ -1,13 +1,14 @@
 //! OnLine: a particle on a line, through a point p along u (both may be driven) or through two particles a and b.
 //!
 //! ```text
-//! d = u or x_b − x_a,   w = x − p or x − x_a,   C_k = (d × w)_k/|d|      1 row in the plane, 2 in space [m]   (moment.rs)
+//! d = u or x_b − x_a,   w = x − p or x − x_a
+//! C_k = (d × w)_k/|d|                                       1 row in the plane, 2 in space [m]   (moment.rs)
 //! J = ∂C/∂w on the particle;  ∂C/∂d on b, −∂C/∂w − ∂C/∂d on a
 //! C_t = ∂C/∂d · u̇ − ∂C/∂w · ṗ
 //! ```
 //!
-//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: there is no line, and C is
-//! not a number.
+//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: no line
+//! exists there, and C is NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::moment::moment;

@@ -1,4 +1,5 @@
-//! OnPlane: a particle on a plane, through a point p across a normal n (both may be driven) or through three particles a, b and c.
+//! OnPlane: a particle on a plane, through a point p across a normal n (both may be driven) or through three
+//! particles a, b, c.
 //!
 //! ```text
 //! w = x − p or x − x_a,   C = n̂ · w,   n̂ = n/|n|      1 row [m]
@@ -7,8 +8,8 @@
 //! g = ∂C/∂n:     ∂C/∂e = f × g,   ∂C/∂f = g × e        −(their sum with n̂) on a
 //! ```
 //!
-//! λ is the force of the plane on the particle [N]. Three dimensions only: in the plane a line is the same. Fails where a, b and c are in
-//! line: there is no plane, and C is not a number.
+//! λ is the force of the plane on the particle [N]. Three dimensions only: in the plane, OnLine does the same. Fails
+//! where a, b and c are in line: no plane exists there, and C is NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::smooth::{At, Gradient, Residual, Smooth};

@@ -1,15 +1,16 @@
-//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle in the plane, a rod
-//! whose length is driven.
+//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle
+//! in the plane, a rod whose length is driven.
 //!
 //! ```text
 //! d = x − p or x − x_p,   n = d/|d|,   C = |d| − r      1 row [m]
 //! J = nᵀ on the particle, −nᵀ on the other,   C_t = −n·ṗ − ṙ
 //! ```
 //!
-//! λ is the force of the sphere on the particle [N], outwards; of a driven rod the tension is −λ. Distance is the same with a length that
-//! stays: it has the forms, the compliance and the fast ways that need it.
+//! λ is the force of the sphere on the particle [N], outwards; the tension of a driven rod is −λ. Distance is the
+//! same constraint with a fixed length, and has the squared form, the compliance and the fast paths that large
+//! systems need.
 //!
-//! Fails at |d| = 0, where it takes the first axis for n, so that a projection can still pull the two apart.
+//! Fails at |d| = 0, where the first axis takes the place of n, so that a projection can still pull the two apart.
 
 use super::anchor::{Anchor, check_different};
 use super::smooth::{At, Gradient, Residual, Smooth};

@@ -1,5 +1,5 @@
-//! Relation: a linear relation between places, Σ w_i x_i = p. One particle in the middle of two others, the centre of mass at a
-//! point, two particles at one place.
+//! Relation: a linear relation between positions, Σ w_i x_i = p. One particle in the middle of two others, the centre
+//! of mass at a point, two particles at one place.
 //!
 //! ```text
 //! C = Σ w_i x_i − p(t)      d rows [m], λ: force on a particle of weight 1 [N]
@@ -12,7 +12,7 @@ use crate::driven::Driven;
 use crate::number::Number;
 use crate::space::ParticleId;
 
-/// A weighted sum of places that is held at a point.
+/// A weighted sum of positions that is held at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relation {
     /// The particles with their weights, each particle once.

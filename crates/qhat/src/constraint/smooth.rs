@@ -1,4 +1,5 @@
-//! Constraints from C and its gradient alone: every other derivative follows by carrying one along through the same formulas.
+//! Smooth: constraints from C and its gradient alone. Every other derivative follows by carrying one along through
+//! the same formulas.
 //!
 //! ```text
 //! along (q + τ q̇, t + τ):   J ↦ J + J̇ ε,   C_t ↦ C_t + Ċ_t ε
@@ -7,8 +8,8 @@
 //! along coordinate k of particle j:   J_i ↦ J_i + (∂²C/∂x_i ∂x_jk) ε, one column of the geometric stiffness
 //! ```
 //!
-//! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`).
-//! It derives nothing else by hand.
+//! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`). It
+//! derives nothing else by hand.
 
 use super::{Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
@@ -27,7 +28,7 @@ pub(crate) trait Smooth: Clone {
         1
     }
 
-    /// Whether its rows are the components of a vector.
+    /// Whether the rows are the components of one vector.
     fn is_vector(&self) -> bool {
         false
     }
@@ -41,16 +42,17 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// Why it cannot be in d dimensions, in words.
+    /// Why the constraint has no meaning in d dimensions, in words.
     fn fits(&self, dimension: usize) -> Result<(), String> {
         Self::ONLY_IN.map_or(Ok(()), |only| crate::allowed::only_in(only, dimension))
     }
 
-    /// What is wrong with its numbers, in words.
+    /// What is wrong with the numbers of the constraint, in words.
     fn check(&self) -> Result<(), String>;
 }
 
-/// Where a row is evaluated: the places of the particles of its constraint, and t [s]. Both carry the derivative along one direction.
+/// Where a row is evaluated: the positions of the particles of its constraint [m], and t [s]. Both carry their
+/// derivative along one direction.
 pub(crate) struct At<'a, N, const D: usize> {
     motion: Motion<'a, D>,
     particles: &'a [ParticleId],
@@ -58,16 +60,16 @@ pub(crate) struct At<'a, N, const D: usize> {
     pub(super) t: N,
 }
 
-/// The direction of the derivative.
+/// The direction along which positions and time carry a derivative.
 enum Along {
-    /// (q̇, 1): everything moves as it does, and time goes on.
+    /// (q̇, 1): the motion itself.
     Motion,
-    /// Coordinate k of particle j of the constraint, the time at rest.
+    /// Coordinate k of particle j of the constraint, at a fixed time.
     Coordinate { j: usize, k: usize },
 }
 
 impl<N: Number, const D: usize> At<'_, N, D> {
-    /// Where the i-th particle of the constraint is [m].
+    /// x of the i-th particle of the constraint [m].
     #[inline(always)]
     pub(super) fn x(&self, i: usize) -> [N; D] {
         let place = self.motion.x(self.particles[i]);
@@ -83,18 +85,18 @@ impl<N: Number, const D: usize> At<'_, N, D> {
     }
 }
 
-/// Where a row puts ∂C/∂x [C/m], one particle after the other.
+/// The receiver of ∂C/∂x [C/m] of one row, one particle after the other.
 pub(crate) struct Gradient<'a, N, const D: usize>(&'a mut dyn FnMut([N; D]));
 
 impl<N, const D: usize> Gradient<'_, N, D> {
-    /// ∂C/∂x of the next particle of the constraint.
+    /// Takes ∂C/∂x of the next particle of the constraint.
     #[inline(always)]
     pub(super) fn push(&mut self, block: [N; D]) {
         (self.0)(block);
     }
 }
 
-/// What a row returns.
+/// C and C_t of one row.
 pub(crate) struct Residual<N> {
     /// C(q, t) [C].
     pub(super) C: N,

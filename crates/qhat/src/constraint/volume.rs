@@ -1,4 +1,4 @@
-//! Volume: a tetrahedron, or any closed surface of triangles, keeps its volume, or one that follows a schedule V(t). In space.
+//! Volume: a tetrahedron, or any closed surface of triangles, keeps its volume V(t), which may be driven. In space.
 //!
 //! ```text
 //! a, b, c   the corners of each face, counted from x_0
@@ -7,9 +7,10 @@
 //! C_t = −V̇
 //! ```
 //!
-//! Positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed, each side between two faces
-//! that run along it in opposite directions: then neither C nor its gradient depends on the point places are counted from. Fails
-//! where all corners lie in one line or place: the gradient vanishes.
+//! V is positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed:
+//! each side belongs to two faces that run along it in opposite directions. Then neither C nor its gradient depends
+//! on the point that positions count from. Fails where all corners lie in one line or place, because the gradient
+//! vanishes there.
 
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
@@ -22,9 +23,9 @@ use std::collections::HashSet;
 pub struct Volume {
     /// The corners of the surface, each once.
     particles: Vec<ParticleId>,
-    /// The corners of each face, counting `particles`.
+    /// The corners of each face, as places in `particles`.
     faces: Vec<[usize; 3]>,
-    /// The other two corners of the faces at each particle, in their order.
+    /// The other two corners of each face at each particle, in their order.
     around: Vec<Vec<[usize; 2]>>,
     volume: Driven,
 }
