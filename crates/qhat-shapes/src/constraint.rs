@@ -28,7 +28,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
             shapes.push(Shape::new(ShapeKind::Nail, shapes.of, [nail.particle]).at([nail.at]));
         }
         // An equation has no picture.
-        Constraint::ExpressionConstraint(_) => (),
+        Constraint::ExpressionConstraint(_) | Constraint::Custom(_) => (),
         Constraint::Obstacle(barrier) => add_obstacle(barrier, shapes),
         Constraint::Relation(relation) => add_relation(relation, shapes),
         Constraint::Lengths(lengths) => add_lengths(lengths, shapes),

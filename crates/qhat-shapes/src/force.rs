@@ -24,6 +24,7 @@ pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
             | Force::MouseSpring(_)
             | Force::ExpressionForce(_)
             | Force::ExpressionPotential(_)
+            | Force::CustomForce(_)
             | Force::CentralForce(_)
             | Force::InverseSquare(_)
             | Force::AirDrag(_)

@@ -1,4 +1,4 @@
-//! A number that may change with time: the length of a driven rod, the angle of a crank.
+//! Driven: a number that may change with time, such as the length of a driven rod or the angle of a crank.
 
 use crate::expression::Expression;
 use crate::number::Number;
@@ -6,14 +6,14 @@ use crate::number::Number;
 /// A number, or a function of t alone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Driven {
-    /// It stays.
+    /// A fixed number.
     Constant(f64),
-    /// It follows an expression that depends on nothing but t [s].
+    /// An expression that depends on t [s] alone.
     Function(Expression),
 }
 
 impl Driven {
-    /// s and ṡ at t. With a derivative in t they carry theirs: ṡ and s̈.
+    /// s and ṡ at t. If t carries a derivative, they carry theirs: ṡ and s̈.
     pub(crate) fn at<N: Number>(&self, t: N) -> (N, N) {
         match self {
             Driven::Constant(value) => (N::constant(*value), N::constant(0.0)),
@@ -24,12 +24,12 @@ impl Driven {
         }
     }
 
-    /// Its value at t [s].
+    /// The value at t [s].
     pub fn value(&self, t: f64) -> f64 {
         self.at(t).0
     }
 
-    /// `Ok` if it is a finite number at the start, or a function of time alone; otherwise a sentence that names it.
+    /// `Ok` if the value is finite at t = 0 and depends on time alone. `what` names the number in the message.
     pub(crate) fn check(&self, what: &str) -> Result<(), String> {
         if let Driven::Function(function) = self
             && (!function.particles().is_empty() || function.uses_velocities())

@@ -49,6 +49,7 @@ mod driven;
 mod energy;
 mod ensemble;
 mod error;
+mod hyper;
 mod integrate;
 mod modes;
 mod multiplier;
@@ -69,9 +70,9 @@ mod threads;
 pub use body::Body;
 pub use cluster::rigid_rods;
 pub use constraint::{
-    Anchor, Angle, Area, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint, ExpressionConstraint,
-    Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint, Obstacle, OnCircle,
-    OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
+    Anchor, Angle, Area, Constraint, Curve, Custom, CustomConstraint, Direction, Distance, DistanceForm, DrivenPoint,
+    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint,
+    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
 };
 pub use driven::Driven;
 pub use energy::Energy;
@@ -79,9 +80,11 @@ pub use ensemble::step_all;
 pub use error::{BodyError, BuildError, SettingsError, StepError};
 pub use expression::{Expression, ExpressionError, Purpose, Scope};
 pub use force::{
-    Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, Gas,
-    Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
+    Actuator, AirDrag, CentralForce, CubicSpring, CustomForce, CustomPotential, Drag, ExpressionForce,
+    ExpressionPotential, Facet, Force, Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure,
+    Spring, TorsionSpring,
 };
+pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
 pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};

@@ -12,6 +12,7 @@ mod columns;
 mod contacts;
 mod contacts_random;
 mod contacts_singular;
+mod custom;
 mod degenerate;
 mod docs;
 mod equivalence;

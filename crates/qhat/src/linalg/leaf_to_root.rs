@@ -31,6 +31,7 @@ use super::block::{
     Block, accumulate, diagonal, divide, forward, ldl, load, outer, plus, product, store, times, transposed,
     transposed_times, vector, zero,
 };
+use crate::number::{dot, norm};
 
 /// No parent, no row, no edge.
 pub(crate) const NONE: usize = usize::MAX;
@@ -274,18 +275,4 @@ fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Optio
 #[inline(always)]
 fn put<const D: usize>(flat: &mut [f64], i: usize, x: [f64; D]) {
     flat[i * D..][..D].copy_from_slice(&x);
-}
-
-#[inline(always)]
-fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
-    let mut sum = a[0] * b[0];
-    for k in 1..D {
-        sum += a[k] * b[k];
-    }
-    sum
-}
-
-#[inline(always)]
-fn norm<const D: usize>(a: [f64; D]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -34,7 +34,7 @@ macro_rules! kinds {
 kinds! {
     in [2, 3];
     equality Distance Nail Relation Lengths Angle Direction OnLine OnSphere OnCurve ExpressionConstraint;
-    other Limits Obstacle;
+    other Limits Obstacle Custom;
 
     in [2];
     equality Gears Area;
@@ -64,7 +64,7 @@ fn can_be_driven() -> BTreeSet<String> {
             declared.push((words.remove(0), words));
         }
     }
-    let mut driven = BTreeSet::from(["Driven".to_owned(), "Driven".to_owned()]);
+    let mut driven = BTreeSet::from(["Driven".to_owned()]);
     loop {
         let more: Vec<String> = declared
             .iter()
