@@ -1,11 +1,12 @@
-//! What a change of modes is to a user: events.
+//! Events for the report, from a change of modes.
 
 use crate::modes::{Mode, Modes};
 use crate::report::{Event, EventKind};
 use crate::structure::Contacts;
 use crate::system::System;
 
-/// Adds what happened between the modes before and these: impacts, each a contact with its speed [m/s], then what changed.
+/// Adds the events at one time [s]: impacts, each a contact with its closing speed [m/s], then the changes from the
+/// modes before to those after.
 pub(crate) fn write_events(
     (before, after): (&Modes, &Modes),
     impacts: &[(usize, f64)],
@@ -13,11 +14,11 @@ pub(crate) fn write_events(
     events: &mut Vec<Event>,
 ) {
     let Contacts { list: contacts, breakables } = &system.contacts;
-    let mut note = |place: usize, kind: EventKind| {
-        events.push(Event { time, constraint: system.constraints[place].name.clone(), kind });
+    let mut note = |constraint: usize, kind: EventKind| {
+        events.push(Event { time, constraint: system.constraints[constraint].name.clone(), kind });
     };
-    for &(contact, speed) in impacts {
-        note(contacts[contact].constraint, EventKind::Impact { speed });
+    for &(k, speed) in impacts {
+        note(contacts[k].constraint, EventKind::Impact { speed });
     }
     for (k, contact) in contacts.iter().enumerate() {
         let kind = match (before.contacts[k], after.contacts[k]) {
@@ -30,8 +31,8 @@ pub(crate) fn write_events(
         };
         note(contact.constraint, kind);
     }
-    for (k, breakable) in breakables.iter().enumerate() {
-        if after.broken[k] && !before.broken[k] {
+    for (number, breakable) in breakables.iter().enumerate() {
+        if after.broken[number] && !before.broken[number] {
             note(breakable.constraint, EventKind::Broke);
         }
     }
