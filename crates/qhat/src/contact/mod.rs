@@ -20,18 +20,18 @@
 mod complementarity;
 mod cones;
 mod event_functions;
-mod events;
 mod impact;
 mod lemke;
 mod resolution;
+mod rest;
 mod start;
 
 pub(crate) use complementarity::NoConsistentModes;
 use complementarity::{Touching, settle};
 pub(crate) use event_functions::{EventCause, EventFunctions, Normals, first_violated};
-pub(crate) use events::write_events;
 use impact::{Impact, hold};
-pub(crate) use resolution::{EventResolution, RestThresholds, TOUCH_DISTANCE, rest_speed};
+pub(crate) use resolution::EventResolution;
+pub(crate) use rest::{RestThresholds, TOUCH_DISTANCE, rest_speed};
 pub(crate) use start::{close, deepest};
 
 #[cfg(test)]

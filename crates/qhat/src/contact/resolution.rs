@@ -1,4 +1,5 @@
-//! Resolution of an event: the constraint that breaks, the impact, and the modes in which the motion goes on.
+//! Resolution of an event: the constraint that breaks, the impact, the modes in which the motion goes on, and the events
+//! for the report.
 //!
 //! Two contacts of one body may hit in turn for ever, each impact too slow to matter (a rocking block, two ropes). So
 //! if contacts separate so slowly that the applied forces would close them again within the rest time, the separation
@@ -6,11 +7,14 @@
 //! only remove energy.
 
 use super::complementarity::{along, size};
+use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::Motion;
+use crate::report::{Event, EventKind};
 use crate::settings::Feedback;
+use crate::structure::Contacts;
 use crate::system::System;
 
 /// Rounds of one resolution. Holding one contact may make another close; more rounds than this are a chain without an
@@ -24,36 +28,13 @@ const STOPS: f64 = 1000.0;
 /// τ of a shock (`impact.rs`), in frames: a time in which nothing else happens.
 const SHOCK: f64 = 1e-3;
 
-/// Gap below which an open contact touches, in constraint tolerances: twice what its event function may be off at the
-/// event.
-pub(crate) const TOUCH_DISTANCE: f64 = 2.0;
-
-/// The distances, times and speeds below which a contact counts as touching or at rest.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RestThresholds {
-    /// Gap below which an open contact touches, relative to the row's scale.
-    pub(crate) touch_distance: f64,
-    /// The rest time [s]: an impact whose flight would be shorter gives nothing back. `None`: no impact gives
-    /// anything back.
-    pub(crate) shortest_flight: Option<f64>,
-    /// The length of a frame [s].
-    pub(crate) frame: f64,
-}
-
-/// The rest speed [m/s]: a billionth of the fastest particle, or of the change of velocity by the applied forces in one
-/// frame. A slower slip or approach counts as zero.
-pub(crate) fn rest_speed(qd: &[f64], WQ: &[f64], frame: f64) -> f64 {
-    let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    1e-9 * largest(qd).max(frame * largest(WQ))
-}
-
 /// The report of a resolution.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Resolved {
     /// Kinetic energy lost in impacts [J].
     pub(crate) lost: f64,
-    /// Contacts that closed faster than the bounce speed, each with its closing speed [m/s].
-    pub(crate) impacts: Vec<(usize, f64)>,
+    /// Impacts, in which a contact closed faster than the bounce speed; then the changes of modes.
+    pub(crate) events: Vec<Event>,
 }
 
 /// A system at the time of an event.
@@ -75,6 +56,7 @@ impl<const D: usize> EventResolution<'_, D> {
         cause: Option<EventCause>,
     ) -> Result<Resolved, NoConsistentModes> {
         let mut resolved = Resolved::default();
+        let at_first = modes.clone();
         let next_slip = self.next_slip(cause);
         if let Some(EventCause::Break(breakable)) = cause {
             modes.broken[breakable] = true;
@@ -102,7 +84,10 @@ impl<const D: usize> EventResolution<'_, D> {
             // A contact that stays closed must not separate, however slowly; holding it may make another contact close.
             let closed = touching.iter().filter(|touching| modes.contacts[touching.contact].is_closed());
             let separates = |touching: &&Touching| self.rate(touching.contact).abs() > self.rest_speed();
-            let Some(separating) = closed.into_iter().find(separates) else { return Ok(resolved) };
+            let Some(separating) = closed.into_iter().find(separates) else {
+                self.write_changes(&at_first, modes, &mut resolved.events);
+                return Ok(resolved);
+            };
             last = separating.contact;
             resolved.lost += hold::<D>(self.equation, self.system, self.qd);
         }
@@ -190,8 +175,10 @@ impl<const D: usize> EventResolution<'_, D> {
         resolved: &mut Resolved,
     ) -> Result<(), NoConsistentModes> {
         let bounce_speed = self.bounce_speed();
-        let speeds = closing.iter().map(|&k| (k, -self.rate(k)));
-        resolved.impacts.extend(speeds.filter(|&(_, speed)| speed > bounce_speed));
+        for &k in closing.iter().filter(|&&k| -self.rate(k) > bounce_speed) {
+            let speed = -self.rate(k);
+            resolved.events.push(self.event(self.system.contacts.list[k].constraint, EventKind::Impact { speed }));
+        }
         let touching: Vec<Touching> = near.iter().map(|&k| self.touching(k, true, false)).collect();
         let bounces: Vec<bool> = near.iter().map(|&k| -self.rate(k) > bounce_speed).collect();
         let mut during = modes.clone();
@@ -257,5 +244,30 @@ impl<const D: usize> EventResolution<'_, D> {
             }
             _ => {}
         }
+    }
+
+    /// Adds the changes from the modes before to those after.
+    fn write_changes(&self, before: &Modes, after: &Modes, events: &mut Vec<Event>) {
+        let Contacts { list: contacts, breakables } = &self.system.contacts;
+        for (k, contact) in contacts.iter().enumerate() {
+            let kind = match (before.contacts[k], after.contacts[k]) {
+                (Mode::Open, Mode::Open) => continue,
+                (Mode::Open, _) => EventKind::Closed,
+                (_, Mode::Open) => EventKind::Opened,
+                (Mode::Sticking, Mode::Sliding(_)) => EventKind::Slipped,
+                (Mode::Sliding(_), Mode::Sticking) => EventKind::Stuck,
+                _ => continue,
+            };
+            events.push(self.event(contact.constraint, kind));
+        }
+        for (number, breakable) in breakables.iter().enumerate() {
+            if after.broken[number] && !before.broken[number] {
+                events.push(self.event(breakable.constraint, EventKind::Broke));
+            }
+        }
+    }
+
+    fn event(&self, constraint: usize, kind: EventKind) -> Event {
+        Event { time: self.t, constraint: self.system.constraints[constraint].name.clone(), kind }
     }
 }

@@ -15,7 +15,7 @@ use super::adaptive::pair::PairStepper;
 use super::adaptive::{Attempt, Outcome, Stepper, accepts};
 use super::field::{Field, GeneralField, pack, unpack};
 use crate::contact::{
-    EventCause, EventFunctions, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE, rest_speed, write_events,
+    EventCause, EventFunctions, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE, rest_speed,
 };
 use crate::drift::Drift;
 use crate::error::StepError;
@@ -109,14 +109,13 @@ impl<'a, const D: usize> EventStepper<'a, D> {
             shortest_flight: if self.count < BOUNCING { Some(1e-3 * self.frame) } else { None },
             frame: self.frame,
         };
-        let before = self.modes.clone();
         let cause = self.cause.take();
         if let Some(EventCause::Singular(k)) = cause {
             self.skipped = Some(k);
         }
         let Workspace { equation, q, qd, .. } = workspace;
         let outcome = EventResolution::<D> { equation, system, q, qd, t, thresholds }.resolve(&mut self.modes, cause);
-        let resolved = outcome.map_err(|failure| {
+        let mut resolved = outcome.map_err(|failure| {
             let place = system.contacts.list[failure.contact].constraint;
             StepError::Jammed { time: t, constraint: system.constraints[place].name.clone() }
         })?;
@@ -125,7 +124,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         pack(&workspace.qd, &mut self.run.stages.qd);
         self.run.stages.is_first_known = false;
         self.run.field.is_factored = false;
-        write_events((&before, &self.modes), &resolved.impacts, (system, t), &mut self.events);
+        self.events.append(&mut resolved.events);
         // The start of the next substep. The resolution evaluated all rows; `constrain` masks the inactive ones.
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
         self.at_start.Cd.clone_from(&equation.rows.Cd);
