@@ -49,8 +49,8 @@ pub struct Terms {
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,
-    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied [N]; positive if it pulls its ends
-    /// together.
+    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied [N]; positive if it pulls
+    /// its ends together.
     pub tension: Vec<f64>,
     /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.
     pub is_open: Vec<bool>,

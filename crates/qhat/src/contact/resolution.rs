@@ -1,5 +1,5 @@
-//! Resolution of an event: the constraint that breaks, the impact, the modes in which the motion goes on, and the events
-//! for the report.
+//! Resolution of an event: the constraint that breaks, the impact, the modes in which the motion goes on, and the
+//! events for the report.
 //!
 //! Two contacts of one body may hit in turn for ever, each impact too slow to matter (a rocking block, two ropes). So
 //! if contacts separate so slowly that the applied forces would close them again within the rest time, the separation

@@ -19,7 +19,7 @@ use crate::state::State;
 /// and leaves the time of an impact good to 1e-12 of the extent over the speed.
 const SHARP: f64 = 0.01;
 
-/// Attempts at one event. The secant takes three to nine, halving would take forty.
+/// Attempts at one event. The secant took three to nine where it was watched; halving takes forty.
 const ATTEMPTS: usize = 60;
 
 /// Length of a bracket, in frames, at which its ends count as the same time.

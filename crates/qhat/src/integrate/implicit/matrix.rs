@@ -5,10 +5,15 @@
 //! J           −E     ·  −Δμ   =   s            E = α/(h_e² (1 + α c/h_e)) for a row of compliance α and damping c
 //! ```
 //!
-//! Rows that are not eliminated with a particle act through a penalty, E + ε instead of E. Eliminating Δμ leaves M +
-//! h_e² K + Jᵀ (E + ε)⁻¹ J, positive definite wherever the step has a minimum, also with redundant rows. The residual
-//! of every iteration is the true one, so ε changes the path of Newton's method and not its limit (the proximal
-//! method of multipliers): a row whose own E is σ comes nearer by ε/(σ + ε) an iteration.
+//! Rows that are not eliminated with a particle act through a penalty, E + ε instead of E. Eliminating Δμ leaves
+//!
+//! ```text
+//! M + h_e² K + Jᵀ (E + ε)⁻¹ J
+//! ```
+//!
+//! which is positive definite wherever the step has a minimum, also with redundant rows. The residual of every iteration
+//! is the true one, so ε changes the path of Newton's method and not its limit (the proximal method of multipliers): a
+//! row whose own E is σ comes nearer by ε/(σ + ε) an iteration.
 //!
 //! `graph.rs` says where each block is, `stiffness.rs` adds K and the penalties, `passes.rs` solves.
 
