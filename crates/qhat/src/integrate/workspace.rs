@@ -91,3 +91,27 @@ impl Workspace {
         solver.memory.note(state, inactive);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Dimension, Gravity, Limits, Particle, Settings, project};
+
+    /// A taut rope and a slack one may have the same q: the factor of one must not serve the other.
+    #[test]
+    fn a_factor_is_not_kept_for_other_modes() {
+        let mut builder = System::builder(Dimension::Two);
+        let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
+        let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
+        builder.constraint("rope", Limits::rope(hook, bob, 1.0)).force(Gravity { acceleration: [0.0, -9.81, 0.0] });
+        let (system, mut taut) = builder.build().unwrap();
+        let mut workspace = Workspace::new(&system);
+        project(&system, &mut taut, &Settings::default(), &mut workspace).unwrap();
+        let slack = taut.at(taut.positions().to_vec(), taut.velocities().to_vec());
+        let tension = |workspace: &mut Workspace, state: &State| workspace.tension(&system, state, &Feedback::NONE);
+        // The rope carries m g, to a few roundings of numbers of size 20.
+        assert!((tension(&mut workspace, &taut)[0] - 2.0 * 9.81).abs() < 1e-13);
+        assert_eq!(tension(&mut workspace, &slack), [0.0]);
+        assert_eq!(tension(&mut workspace, &taut), tension(&mut Workspace::new(&system), &taut));
+    }
+}
