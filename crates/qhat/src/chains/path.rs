@@ -21,7 +21,7 @@
 //! λ_i = (y_i − f_i z − e_{i+1} λ_{i+1})/D_i
 //! ```
 //!
-//! Source: Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), for the elimination; Wang, A parallel method for
+//! Source: Baraff, Linear-Time Dynamics using Lagrange SolveFor (1996), for the elimination; Wang, A parallel method for
 //! tridiagonal equations, ACM TOMS 7 (1981), for the partition.
 
 use crate::linalg::eight::{F8, LANES, Wide, dot, load, minus};

@@ -23,7 +23,7 @@
 //!
 //! A pivot across that is not positive (H need not be definite) is mended: first by taking out the indefinite part of its
 //! edge (`retreat`), then by adding to its diagonal. Both leave the right side alone, so that Newton's method stays right.
-//! Source: Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), extended by geometric stiffness.
+//! Source: Baraff, Linear-Time Dynamics using Lagrange SolveFor (1996), extended by geometric stiffness.
 
 use super::block::{
     Block, accumulate, diagonal, divide, forward, ldl, load, outer, plus, product, store, times, transposed,

@@ -2,14 +2,38 @@
 //! rank is the number of pivots before they fall to the roundoff of what was subtracted.
 //! Source: Higham, Analysis of the Cholesky decomposition of a semi-definite matrix (1990).
 
-use super::Pattern;
+/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is consumed.
+pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
+    // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
+    // amplified by the conditioning of the rows already taken, for which three digits are allowed.
+    let tolerance = 1e3 * f64::EPSILON * (n.max(1) as f64);
+    let mut active: Vec<usize> = (0..n).collect();
+    let mut rank = 0;
+    while let Some((place, pivot)) = largest(&active, |i| matrix[i * n + i]) {
+        let d = matrix[pivot * n + pivot];
+        if d.is_nan() || d <= tolerance {
+            break;
+        }
+        active.swap_remove(place);
+        rank += 1;
+        for &i in &active {
+            let l = matrix[i * n + pivot] / d;
+            if l != 0.0 {
+                for &j in &active {
+                    matrix[i * n + j] -= l * matrix[pivot * n + j];
+                }
+            }
+        }
+    }
+    rank
+}
 
 /// Rank of the sparse matrix of a pattern, with the unknowns that `is_eliminated` names taken out of it first and a
 /// diagonal of one for the rows that `is_active` names, of zero for the others.
 ///
 /// An eliminated unknown h has −1 on its diagonal, so eliminating it adds the outer product of its column.
 pub(crate) fn rank_of(
-    pattern: &Pattern,
+    pattern: &super::Pattern,
     values: &[f64],
     is_eliminated: impl Fn(usize) -> bool,
     is_active: impl Fn(usize) -> bool,
@@ -37,32 +61,6 @@ pub(crate) fn rank_of(
         dense[i * n + i] = if is_active(i) { 1.0 } else { 0.0 };
     }
     rank(n, dense)
-}
-
-/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is consumed.
-pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
-    // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
-    // amplified by the conditioning of the rows already taken, for which three digits are allowed.
-    let tolerance = 1e3 * f64::EPSILON * (n.max(1) as f64);
-    let mut active: Vec<usize> = (0..n).collect();
-    let mut rank = 0;
-    while let Some((place, pivot)) = largest(&active, |i| matrix[i * n + i]) {
-        let d = matrix[pivot * n + pivot];
-        if d.is_nan() || d <= tolerance {
-            break;
-        }
-        active.swap_remove(place);
-        rank += 1;
-        for &i in &active {
-            let l = matrix[i * n + pivot] / d;
-            if l != 0.0 {
-                for &j in &active {
-                    matrix[i * n + j] -= l * matrix[pivot * n + j];
-                }
-            }
-        }
-    }
-    rank
 }
 
 fn largest(active: &[usize], value: impl Fn(usize) -> f64) -> Option<(usize, usize)> {
