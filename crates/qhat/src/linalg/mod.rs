@@ -29,7 +29,7 @@ pub(crate) use incidence::Incidence;
 pub(crate) use leaf_to_root::{ForestEdge, LeafToRoot, NONE, Saddle};
 pub(crate) use plan::EliminationPlan;
 pub use plan::{Component, ComponentKind, FactorMethod};
-pub(crate) use rank::rank;
+pub(crate) use rank::rank_of;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use symmetric::{Lower, Pattern};
 

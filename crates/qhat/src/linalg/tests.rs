@@ -5,7 +5,7 @@ use super::dissection::nested_dissection;
 use super::elimination::Elimination;
 use super::{
     ComponentKind, DenseLdl, EliminationPlan, Factor, Incidence, Pattern, SparseLdl, Symbolic, SymmetricMatrix,
-    ordering, rank,
+    ordering, rank::rank,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
