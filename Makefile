@@ -1,4 +1,4 @@
-# What people and CI call. `make` alone lists it. scripts/setup installs what is missing, so nothing is run by hand before.
+# The commands of people and CI. `make` alone lists them. scripts/setup installs the tools that are missing.
 
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
@@ -28,12 +28,14 @@ build: page ## the qhat command with the page inside, in target/release/qhat
 page: $(PAGE) ## the page alone, in playground/dist
 
 # Folders stand in the list beside their files, so that a removed file counts as a change.
-$(PAGE): $(WASM) $(shell find playground/src playground/public scenes -path playground/src/wasm -prune -o -print 2>/dev/null) \
+PAGE_SOURCES = $(shell find playground/src playground/public scenes \
+	-path playground/src/wasm -prune -o -print 2>/dev/null)
+$(PAGE): $(WASM) $(PAGE_SOURCES) \
 		$(wildcard playground/*.json playground/*.ts playground/*.html)
 	@echo "Building the page"
 	@npm --prefix playground run --silent build
 
-# Asked every time, because cargo knows best what changed; the script leaves the file alone when its content is the same.
+# The script runs every time, because cargo knows which sources changed. It leaves the file alone if its content stays.
 $(WASM): FORCE
 	@scripts/setup wasm page
 	@echo "Building the engine for the browser"

@@ -34,7 +34,8 @@ pub const NAMES: [&str; 22] = [
 /// A name that is no workload's.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
-    "there is no workload `{name}`; use chainN, heavyR, netN, clothN, trussK, trussKr, four-bar, starN or manyN, as in {}",
+    "there is no workload `{name}`; use chainN, heavyR, netN, clothN, trussK, trussKr, four-bar, starN or manyN, \
+     as in {}",
     NAMES.join(", ")
 )]
 pub struct UnknownWorkload {

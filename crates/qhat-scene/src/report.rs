@@ -50,8 +50,8 @@ impl<'a> Report<'a> {
 
     /// Whether the report takes no more errors, so that checking on is of no use.
     pub(crate) fn is_full(&mut self) -> bool {
-        // Not `self.more |= is_full`: rustc 1.95.0 at opt-level 2 and 3 compiles that, in callers that go on to `error`, to
-        // `self.more = true`.
+        // Not `self.more |= is_full`: rustc 1.95.0 at opt-level 2 and 3 compiles that, in callers that go on to
+        // `error`, to `self.more = true`.
         if self.errors.len() < MOST_ERRORS {
             return false;
         }

@@ -15,8 +15,8 @@ use std::path::Path;
 /// Times nearer to the end of a frame than this part of a frame are that end: both are quotients of what a user typed.
 const SAME: f64 = 1e-9;
 
-/// A link that is longer than it can be by this part of its length, and carries nothing, is broken. Links that hold keep
-/// their length to 1e-10.
+/// A link that is longer than it can be by this part of its length, and carries nothing, is broken. Links that hold
+/// keep their length to 1e-10.
 const PARTED: f64 = 1e-6;
 
 /// A state to draw.

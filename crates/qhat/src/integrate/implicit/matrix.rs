@@ -11,9 +11,9 @@
 //! M + h_e² K + Jᵀ (E + ε)⁻¹ J
 //! ```
 //!
-//! which is positive definite wherever the step has a minimum, also with redundant rows. The residual of every iteration
-//! is the true one, so ε changes the path of Newton's method and not its limit (the proximal method of multipliers): a
-//! row whose own E is σ comes nearer by ε/(σ + ε) an iteration.
+//! which is positive definite wherever the step has a minimum, also with redundant rows. The residual of every
+//! iteration is the true one, so ε changes the path of Newton's method and not its limit (the proximal method of
+//! multipliers): a row whose own E is σ comes nearer by ε/(σ + ε) an iteration.
 //!
 //! `graph.rs` says where each block is, `stiffness.rs` adds K and the penalties, `passes.rs` solves.
 
