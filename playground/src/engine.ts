@@ -1,4 +1,4 @@
-// The only file that knows the engine is WebAssembly. Everything else sees the class below and plain records.
+// The only file that imports WebAssembly. The rest of the page uses the class below and plain records.
 
 import start, {
   type Controls,
@@ -15,6 +15,7 @@ import start, {
   shipped_scenes,
   type Terms,
   Simulation as WasmSimulation,
+  type StepEvent as WasmStepEvent,
 } from './wasm/qhat_wasm.js';
 
 export type {
@@ -24,8 +25,8 @@ export type {
   IntegratorFacts,
   IntegratorName,
   Link,
-  Mark,
-  MarkKind,
+  Mark as Shape,
+  MarkKind as ShapeKind,
   Nail,
   Projection,
   Shipped,
@@ -35,7 +36,10 @@ export type {
   Terms,
 } from './wasm/qhat_wasm.js';
 
-/** What the engine says when it refuses; `kind` is the Rust error's type. */
+/** An event of a step; `speed` is the closing speed of an impact, m/s. */
+export type StepEvent = WasmStepEvent & { speed?: number };
+
+/** A refusal of the engine, in its words; `kind` is the type of the Rust error. */
 export class EngineError extends Error {
   constructor(
     readonly kind: string,
@@ -58,7 +62,7 @@ export function integrators(): IntegratorFacts[] {
   return integratorFacts();
 }
 
-/** Row solves a frame that auto may take where a scene does not say. */
+/** Row solves a frame that auto may take where a scene sets no limit. */
 export function defaultFrameWork(): number {
   return default_frame_work();
 }
@@ -67,7 +71,7 @@ export function shippedScenes(): Shipped[] {
   return shipped_scenes();
 }
 
-/** One running scene. The engine computes; this converts errors and frees the memory that JavaScript cannot see. */
+/** One running scene: the class converts errors and frees the engine's memory, which JavaScript does not collect. */
 export class Simulation {
   private readonly inner: WasmSimulation;
 
@@ -78,13 +82,13 @@ export class Simulation {
     this.inner = attempt(() => new WasmSimulation(text, sourceName));
   }
 
-  /** What the scene is made of; rows change with the forms. */
+  /** The parts of the scene; rows change with the formulation. */
   structure(): Structure {
     return this.inner.structure();
   }
 
-  /** What holds the particles beside rods, nails and springs, as it is at a time in s. */
-  marks(time: number): Mark[] {
+  /** The shapes beside rods, nails and springs at a time in s. */
+  shapes(time: number): Mark[] {
     return this.inner.marks(time);
   }
 
@@ -107,7 +111,7 @@ export class Simulation {
     return attempt(() => this.inner.tension());
   }
 
-  /** places of the links that are broken */
+  /** The places of the broken links. */
   broken(): Uint32Array {
     return this.inner.broken();
   }
@@ -120,7 +124,7 @@ export class Simulation {
     return attempt(() => this.inner.terms());
   }
 
-  /** What it took to make the start consistent. */
+  /** How far the start was moved to satisfy the constraints. */
   projection(): Projection {
     return this.inner.projection();
   }
@@ -142,7 +146,7 @@ export class Simulation {
     attempt(() => this.inner.set_controls(controls));
   }
 
-  /** Hangs a mouse spring on a particle; the engine scales its stiffness by the mass. */
+  /** Ties a particle to a target in m by a mouse spring; the engine scales its stiffness by the mass. */
   grab(particle: number, target: readonly number[]): void {
     attempt(() => this.inner.grab(particle, Float64Array.from(target)));
   }

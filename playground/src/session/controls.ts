@@ -1,7 +1,7 @@
-// What each control is called, what it does in one sentence, in which unit, over which range.
+// Each control: its name, its effect in one sentence, its unit and its range.
 
 import type { Controls } from '../engine';
-import type { LogRange } from './scale';
+import type { Scale } from './scale';
 
 export type NumberControl = 'gravity' | 'drag' | 'ks' | 'kd' | 'diagonal_drag' | 'elasticity' | 'h';
 
@@ -11,10 +11,8 @@ export interface ControlSpec {
   symbol: string;
   unit: string;
   sentence: string;
-  scale:
-    | ({ kind: 'log' } & LogRange & { zero: boolean })
-    | { kind: 'linear'; from: number; to: number; step: number };
-  /** works only in integrators that hold the constraints by feedback */
+  scale: Scale;
+  /** has an effect only under integrators that hold the constraints by feedback */
   feedback: boolean;
 }
 

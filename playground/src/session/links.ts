@@ -1,9 +1,9 @@
-// Links in words: what a person calls one, and how long it may be.
+// Links in words: their common names and their lengths.
 
-import type { Link, Mark } from '../engine';
+import type { Link, Shape } from '../engine';
 import { format } from './numbers';
 
-/** It holds one length. */
+/** A rod has one length; ropes and struts have limits. */
 export function isRod({ shortest, longest }: Link): boolean {
   return shortest === longest;
 }
@@ -20,10 +20,10 @@ export function lengthsOf({ shortest, longest }: Link): string {
   return `${format(shortest)} m to ${format(longest)} m`;
 }
 
-/** The marks that are left when the links at these places are broken. */
-export function unbroken(marks: Mark[], links: readonly Link[], broken: ReadonlySet<number>): Mark[] {
-  if (broken.size === 0) return marks;
+/** The shapes without those of the broken links; `broken` has the places of these links. */
+export function unbroken(shapes: Shape[], links: readonly Link[], broken: ReadonlySet<number>): Shape[] {
+  if (broken.size === 0) return shapes;
   const gone = new Set([...broken].map((place) => `${links[place].a} ${links[place].b}`));
-  const isLink = ({ kind }: Mark) => kind === 'rope' || kind === 'strut';
-  return marks.filter((mark) => !isLink(mark) || !gone.has(mark.particles.join(' ')));
+  const isLink = ({ kind }: Shape) => kind === 'rope' || kind === 'strut';
+  return shapes.filter((shape) => !isLink(shape) || !gone.has(shape.particles.join(' ')));
 }

@@ -18,15 +18,15 @@ it('calls each link what it is, and says how long it may be', () => {
 });
 
 it('draws nothing of a broken rope', () => {
-  const mark = (kind: 'rope' | 'wheel', particles: number[]) => ({
+  const shape = (kind: 'rope' | 'wheel', particles: number[]) => ({
     kind,
     particles,
     points: new Float64Array(),
     size: 1,
     driven: false,
   });
-  const marks = [mark('rope', [0, 1]), mark('wheel', [0, 1]), mark('rope', [1, 2])];
+  const shapes = [shape('rope', [0, 1]), shape('wheel', [0, 1]), shape('rope', [1, 2])];
   const links = [link(null, 2), { ...link(null, 2), a: 1, b: 2 }];
-  expect(unbroken(marks, links, new Set())).toBe(marks);
-  expect(unbroken(marks, links, new Set([0]))).toEqual([marks[1], marks[2]]);
+  expect(unbroken(shapes, links, new Set())).toBe(shapes);
+  expect(unbroken(shapes, links, new Set([0]))).toEqual([shapes[1], shapes[2]]);
 });

@@ -1,13 +1,13 @@
 import { expect, it } from 'vitest';
-import type { Mark, Structure } from '../../src/engine';
-import { grouped } from '../../src/session/scenes';
+import type { Shape, Structure } from '../../src/engine';
 import { Camera } from '../../src/view/camera';
-import { drawHolds } from '../../src/view/holds';
-import { LIGHT } from '../../src/view/palette';
+import { drawShapes } from '../../src/view/layers/shapes';
 import type { Picture } from '../../src/view/picture';
+import { Sizes } from '../../src/view/sizes';
+import { colours } from './colours';
 
-/** The calls that draw marks on two particles 3 m apart, one metre being 100 px, in the middle of 800 × 600. */
-function drawn(...marks: Partial<Mark>[]): string[] {
+/** The calls that draw shapes on two particles 3 m apart, one metre being 100 px, in the middle of 800 × 600. */
+function drawn(...shapes: Partial<Shape>[]): string[] {
   const calls: string[] = [];
   const round = (...numbers: number[]) => numbers.map((x) => Math.round(x)).join(',');
   const context = {
@@ -30,17 +30,17 @@ function drawn(...marks: Partial<Mark>[]): string[] {
     camera.project(positions, i, at);
     screen.set(at, 3 * i);
   }
-  const whole = marks.map((mark) => ({
+  const whole = shapes.map((shape) => ({
     kind: 'tie' as const,
     particles: [0, 1],
     points: new Float64Array(0),
     size: 0,
     driven: false,
-    ...mark,
+    ...shape,
   }));
   const structure = { dimension: 2 } as Structure;
-  const picture = { structure, positions, marks: whole, down: [0, -1] } as unknown as Picture;
-  drawHolds(context, picture, screen, camera, LIGHT);
+  const picture = { structure, positions, shapes: whole, down: [0, -1] } as unknown as Picture;
+  drawShapes({ context, camera, screen, palette: colours('light'), sizes: new Sizes() }, picture);
   return calls;
 }
 
@@ -86,14 +86,5 @@ it('draws a box as one filled rectangle', () => {
     'L450,275',
     'Z',
     'fill',
-  ]);
-});
-
-it('puts scenes under their headings in the order in which they come', () => {
-  const scene = (name: string, group: string) => ({ name, group, title: name, text: '' });
-  const groups = grouped([scene('a', 'one'), scene('b', 'two'), scene('c', 'one')]);
-  expect(groups.map(({ heading, scenes }) => [heading, scenes.map(({ name }) => name)])).toEqual([
-    ['one', ['a', 'c']],
-    ['two', ['b']],
   ]);
 });

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { traceChains } from '../../src/view/marks';
+import { traceChains } from '../../src/view/glyphs';
 
 /** The calls a path is made of. */
 function traced(points: [number, number][], rods: { a: number; b: number }[]): string[] {

@@ -1,4 +1,4 @@
-// The marks on the canvas: zig-zag springs, nails, fixed particles, arrows. Each takes screen coordinates in px.
+// The signs on the canvas: zig-zag springs, nails, discs, squares, arrows, lines. All take screen coordinates in px.
 
 /** A spring from one point to another: straight ends, a zig-zag between whose turns do not depend on its length. */
 export function traceSpring(
@@ -25,10 +25,14 @@ export function traceSpring(
   context.lineTo(bx, by);
 }
 
-/** A nail: a ring with a cross, drawn under its particle. */
-export function traceNail(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+export function traceCircle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.moveTo(x + radius, y);
   context.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
+/** A nail: a ring with a cross. */
+export function traceNail(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  traceCircle(context, x, y, radius);
   const arm = radius + 4;
   context.moveTo(x - arm, y);
   context.lineTo(x + arm, y);
@@ -66,6 +70,16 @@ export function drawArrow(
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.fillText(label, tx + ux * 13, ty + uy * 13);
+}
+
+/** A straight line between two particles. */
+export function traceSegment(
+  context: CanvasRenderingContext2D,
+  screen: Float64Array,
+  { a, b }: { a: number; b: number },
+): void {
+  context.moveTo(screen[3 * a], screen[3 * a + 1]);
+  context.lineTo(screen[3 * b], screen[3 * b + 1]);
 }
 
 /** Points of a chain nearer than this to the last one drawn are left out, px: below what anti-aliasing shows. */
