@@ -10,7 +10,7 @@ export interface Command {
   keys: readonly string[];
   /** the name of its button; a command without a button has none */
   label?(page: Page): string;
-  /** what its keys do, as the help says it; '' for a command without keys */
+  /** the effect of its keys, as the help says it; '' for a command without keys */
   help: string;
   enabled(page: Page): boolean;
   /** `key` is the key that was pressed; for a button the first of the keys */

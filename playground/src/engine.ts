@@ -71,7 +71,7 @@ export function shippedScenes(): Shipped[] {
   return shipped_scenes();
 }
 
-/** One running scene: the class converts errors and frees the engine's memory, which JavaScript does not collect. */
+/** One running scene: converts errors, and frees the engine's memory, which JavaScript does not collect. */
 export class Simulation {
   private readonly inner: WasmSimulation;
 

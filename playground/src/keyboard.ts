@@ -27,7 +27,7 @@ export class Keyboard {
     command.run(this.page, key);
   };
 
-  /** The command of a key; an arrow with Shift is the plain arrow where nothing else can be done with it. */
+  /** The command of a key. An arrow with Shift falls back to the plain arrow where the view cannot turn. */
   private find({ key, shiftKey }: KeyboardEvent): { command: Command; key: string } | undefined {
     const keys = shiftKey && key.startsWith('Arrow') ? [`Shift+${key}`, key] : [key];
     const found = keys.flatMap((each) => {

@@ -1,6 +1,6 @@
 // The signs on the canvas: zig-zag springs, nails, discs, squares, arrows, lines. All take screen coordinates in px.
 
-/** A spring from one point to another: straight ends, a zig-zag between whose turns do not depend on its length. */
+/** A spring between two points: straight ends and a zig-zag whose number of turns does not depend on its length. */
 export function traceSpring(
   context: CanvasRenderingContext2D,
   ax: number,
@@ -40,7 +40,7 @@ export function traceNail(context: CanvasRenderingContext2D, x: number, y: numbe
   context.lineTo(x, y + arm);
 }
 
-/** A fixed particle: a square, because nothing moves it. */
+/** A fixed particle: a square. */
 export function traceFixed(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.rect(x - radius, y - radius, 2 * radius, 2 * radius);
 }
@@ -82,10 +82,10 @@ export function traceSegment(
   context.lineTo(screen[3 * b], screen[3 * b + 1]);
 }
 
-/** Points of a chain nearer than this to the last one drawn are left out, px: below what anti-aliasing shows. */
+/** Points of a chain nearer than this to the last point drawn are left out, px: anti-aliasing hides the difference. */
 const FINEST = 0.75;
 
-/** Rods as lines; a run of rods that go on from each other is one line, its points no finer than a screen shows. */
+/** Rods as lines; rods that follow one another are one line, its points no finer than a screen shows. */
 export function traceChains(
   context: CanvasRenderingContext2D,
   screen: Float64Array,

@@ -94,7 +94,7 @@ export class Stage {
     this.camera.orbit(dx, dy);
   }
 
-  /** What panels cover, px; a view nobody has moved stays fitted to the rest. */
+  /** Sets the width that panels cover, px; a view that no person has moved stays fitted to the rest. */
   setInset(inset: Camera['inset']): void {
     const old = this.camera.inset;
     if ((Object.keys(inset) as (keyof typeof inset)[]).every((side) => inset[side] === old[side])) return;

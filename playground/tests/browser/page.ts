@@ -1,4 +1,4 @@
-// One Chromium for a test file, and pages in it that remember what they complained about and whom they asked.
+// One Chromium for a test file, and pages in it that record their errors and their requests.
 
 import {
   type Browser,
@@ -68,7 +68,7 @@ export function laboratory(): Lab {
   return lab;
 }
 
-/** Stopped at t = 0, so that what follows does not depend on how fast the machine is. */
+/** Stops at t = 0, so that a test does not depend on the speed of the machine. */
 export async function atStart(page: Page): Promise<void> {
   await page.evaluate(() => {
     window.qhat.pause();

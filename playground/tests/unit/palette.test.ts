@@ -39,7 +39,7 @@ describe('the tension colours', () => {
       const [push, slack, pull] = [0, (TENSION_STEPS - 1) / 2, TENSION_STEPS - 1].map((step) =>
         seen(parse(tension[step]), matrix),
       );
-      // 60 of 441 is several times what is just told apart on a 3 px line
+      // 60 of 441 is several times the smallest difference that an eye sees on a 3 px line
       expect(distance(push, pull)).toBeGreaterThan(60);
       expect(distance(push, slack)).toBeGreaterThan(60);
       expect(distance(pull, slack)).toBeGreaterThan(60);

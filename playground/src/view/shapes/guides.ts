@@ -6,10 +6,10 @@ import type { Vec3 } from '../camera';
 import { traceRing } from './solids';
 
 const ANGLE_RADIUS = 24;
-/** How far the direction from which an angle counts goes beyond the arc, px. */
+/** An angle may count from a direction: its line ends so far beyond the arc, px. */
 const REFERENCE = 10;
 
-/** What a bead runs along: a wire, an endless line or a ring. */
+/** A guide of a bead: a wire, an endless line or a ring. */
 export function traceGuide(brush: Brush, shape: Shape): void {
   const { context, camera } = brush;
   if (shape.kind === 'ring') traceRing(brush, shape);
@@ -29,7 +29,7 @@ function traceLine(brush: Brush, shape: Shape): void {
   let [ax, ay, bx, by] = ends(brush, shape);
   if (shape.particles.length < 2) {
     const [ox, oy] = project(camera, [0, 0, 0], 0);
-    // the last point is a direction: where the origin would go with it, less where it is
+    // the last point is a direction: the difference of two points on the screen, of which one is the origin
     [bx, by] = [ax + bx - ox, ay + by - oy];
   }
   const length = Math.hypot(bx - ax, by - ay);
@@ -55,7 +55,7 @@ export function traceAngle({ context, camera, screen }: Brush, { particles, poin
       : Math.atan2(-along(camera.up), along(camera.right));
   const turn = arm(c, d) - from;
   const shorter = turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI));
-  // the direction from which it counts is seen where no arm shows it
+  // a line shows the direction from which the angle counts where no arm lies along it
   if (particles.length < 4 || particles[0] !== c) {
     context.moveTo(x, y);
     const far = ANGLE_RADIUS + REFERENCE;

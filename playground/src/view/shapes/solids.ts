@@ -37,7 +37,7 @@ export function traceGround(brush: Brush, shape: Shape): void {
   }
 }
 
-/** Lines of a grid in a plane, around where it is nearest to the middle of the view. */
+/** A grid in a plane, around its point nearest to the middle of the view. */
 export function tracePlane({ context, camera }: Brush, { points }: Shape): void {
   if (camera.dimension === 2) return;
   const point = [points[0], points[1], points[2]];
@@ -66,7 +66,7 @@ export function traceRing(brush: Brush, shape: Shape): void {
   traceAround(brush, shape, Array.from(shape.points.subarray(shape.points.length - 3)));
 }
 
-/** Of a ball in space the circles across the three axes: without them it is a disc. */
+/** The circles of a ball across the three axes: without them a ball in space looks like a disc. */
 export function traceGreatCircles(brush: Brush, shape: Shape): void {
   if (brush.camera.dimension === 2) return;
   for (const k of [0, 1, 2]) {
@@ -116,13 +116,13 @@ export function traceBall(brush: Brush, shape: Shape): void {
   traceCircle(brush.context, x, y, shape.size * brush.camera.scale);
 }
 
-/** The rectangle, or in space the faces that are seen: they lie side by side, so that all is filled alike. */
+/** A rectangle, or in space the visible faces of a box: faces do not overlap, so that all have the same opacity. */
 export function traceBox({ context, camera }: Brush, { points }: Shape): void {
   for (const axis of camera.dimension === 2 ? [2] : [0, 1, 2]) {
     const side = Math.sign(camera.towards[axis]);
     if (side === 0) continue;
     const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    // all the same way round on the screen: faces of two boxes add up and do not cancel
+    // every face has the same sense on the screen: faces of two boxes add up and do not cancel
     for (const [n, [a, b]] of [
       [-1, -1],
       [side, -side],
