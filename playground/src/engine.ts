@@ -4,18 +4,18 @@ import start, {
   type Controls,
   default_frame_work,
   type Energy,
+  type Structure as EngineStructure,
   type InitOutput,
   type IntegratorFacts,
   integrators as integratorFacts,
-  type Mark,
+  type Link,
   type Projection,
+  type Shape,
   type Shipped,
   type StepReport,
-  type Structure,
   shipped_scenes,
   type Terms,
   Simulation as WasmSimulation,
-  type StepEvent as WasmStepEvent,
 } from './wasm/qhat_wasm.js';
 
 export type {
@@ -25,19 +25,24 @@ export type {
   IntegratorFacts,
   IntegratorName,
   Link,
-  Mark as Shape,
-  MarkKind as ShapeKind,
-  Nail,
   Projection,
+  Shape,
+  ShapeKind,
   Shipped,
-  Spring,
+  Source,
+  StepEvent,
   StepReport,
-  Structure,
   Terms,
 } from './wasm/qhat_wasm.js';
 
-/** An event of a step; `speed` is the closing speed of an impact, m/s. */
-export type StepEvent = WasmStepEvent & { speed?: number };
+/** A shape with a tension: a rod, a rope or a strut. */
+export type LinkShape = Shape & { link: Link };
+
+/** The parts of a scene. Rows and names of rows change with the formulation, driven shapes with time. */
+export interface Structure extends EngineStructure {
+  /** the rods, ropes and struts among the shapes, in the order of `tension()` */
+  links: LinkShape[];
+}
 
 /** A refusal of the engine, in its words; `kind` is the type of the Rust error. */
 export class EngineError extends Error {
@@ -82,14 +87,16 @@ export class Simulation {
     this.inner = attempt(() => new WasmSimulation(text, sourceName));
   }
 
-  /** The parts of the scene; rows change with the formulation. */
   structure(): Structure {
-    return this.inner.structure();
+    const structure = this.inner.structure();
+    return { ...structure, links: structure.shapes.filter(isLink) };
   }
 
-  /** The shapes beside rods, nails and springs at a time in s. */
-  shapes(time: number): Mark[] {
-    return this.inner.marks(time);
+  /** The shapes of the scene at a time in s; only driven ones are asked for again. */
+  shapesAt(shapes: Shape[], time: number): Shape[] {
+    if (!shapes.some(({ driven }) => driven)) return shapes;
+    const moved = this.inner.driven_shapes(time).values();
+    return shapes.map((shape) => (shape.driven ? (moved.next().value ?? shape) : shape));
   }
 
   get time(): number {
@@ -162,6 +169,10 @@ export class Simulation {
   free(): void {
     this.inner.free();
   }
+}
+
+export function isLink(shape: Shape): shape is LinkShape {
+  return shape.link !== null;
 }
 
 function attempt<T>(call: () => T): T {

@@ -1,16 +1,11 @@
-// Links in words: their common names and their lengths.
+// Rods, ropes and struts: their lengths in words, and the shapes that are left when links break.
 
-import type { Link, Shape } from '../engine';
+import type { Link, LinkShape, Shape } from '../engine';
 import { format } from './numbers';
 
 /** A rod has one length; ropes and struts have limits. */
-export function isRod({ shortest, longest }: Link): boolean {
-  return shortest === longest;
-}
-
-export function nameOf(link: Link): 'rod' | 'rope' | 'strut' {
-  if (isRod(link)) return 'rod';
-  return link.shortest === null ? 'rope' : 'strut';
+export function isRod({ kind }: LinkShape): boolean {
+  return kind === 'rod';
 }
 
 export function lengthsOf({ shortest, longest }: Link): string {
@@ -20,10 +15,8 @@ export function lengthsOf({ shortest, longest }: Link): string {
   return `${format(shortest)} m to ${format(longest)} m`;
 }
 
-/** The shapes without those of the broken links; `broken` has the places of these links. */
-export function unbroken(shapes: Shape[], links: readonly Link[], broken: ReadonlySet<number>): Shape[] {
+/** The shapes without the broken links; `broken` has the places of these links. */
+export function unbroken(shapes: Shape[], broken: ReadonlySet<number>): Shape[] {
   if (broken.size === 0) return shapes;
-  const gone = new Set([...broken].map((place) => `${links[place].a} ${links[place].b}`));
-  const isLink = ({ kind }: Shape) => kind === 'rope' || kind === 'strut';
-  return shapes.filter((shape) => !isLink(shape) || !gone.has(shape.particles.join(' ')));
+  return shapes.filter(({ link }) => link === null || !broken.has(link.place));
 }

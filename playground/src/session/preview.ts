@@ -16,8 +16,7 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   const { dimension, duration } = structure;
   const still = emptyBox(dimension);
   include(still, simulation.positions());
-  for (const nail of structure.nails) include(still, nail.at.slice(0, dimension));
-  for (const shape of simulation.shapes(simulation.time)) {
+  for (const shape of structure.shapes) {
     for (const corner of extentOf(shape, dimension)) include(still, corner);
   }
   const box: Box = { min: [...still.min], max: [...still.max] };
@@ -39,6 +38,7 @@ function extentOf({ kind, particles, points, size }: Shape, dimension: number): 
   const point = (i: number) => Array.from(points.subarray(3 * i, 3 * i + dimension));
   const around = (centre: number[], reach: number[]) =>
     [-1, 1].map((side) => centre.map((x, k) => x + side * reach[k]));
+  if (kind === 'nail') return [point(0)];
   if (kind === 'wire') return Array.from({ length: points.length / 3 }, (_, i) => point(i));
   if (kind === 'box') return around(point(0), point(1));
   if ((kind === 'ring' || kind === 'ball' || kind === 'bowl') && particles.length === 0)

@@ -12,7 +12,6 @@ import { drawNails } from './layers/nails';
 import { drawParticles } from './layers/particles';
 import { drawScale } from './layers/scale';
 import { drawShapes } from './layers/shapes';
-import { drawSprings } from './layers/springs';
 import type { Palette } from './palette';
 import { pick } from './pick';
 import type { Picture, Selection } from './picture';
@@ -23,7 +22,6 @@ const LAYERS: readonly Layer[] = [
   drawGrid,
   drawGhost,
   drawShapes,
-  drawSprings,
   drawLinks,
   drawNails,
   drawParticles,

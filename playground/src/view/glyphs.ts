@@ -76,7 +76,7 @@ export function drawArrow(
 export function traceSegment(
   context: CanvasRenderingContext2D,
   screen: Float64Array,
-  { a, b }: { a: number; b: number },
+  [a, b]: readonly number[],
 ): void {
   context.moveTo(screen[3 * a], screen[3 * a + 1]);
   context.lineTo(screen[3 * b], screen[3 * b + 1]);
@@ -89,7 +89,7 @@ const FINEST = 0.75;
 export function traceChains(
   context: CanvasRenderingContext2D,
   screen: Float64Array,
-  rods: readonly { a: number; b: number }[],
+  rods: readonly { particles: readonly number[] }[],
 ): void {
   let [end, x, y] = [-1, 0, 0];
   let owed = false;
@@ -97,7 +97,8 @@ export function traceChains(
     if (owed) context.lineTo(screen[3 * end], screen[3 * end + 1]);
     owed = false;
   };
-  for (const { a, b } of rods) {
+  for (const { particles } of rods) {
+    const [a, b] = [particles[0], particles[1]];
     if (a !== end) {
       settle();
       [x, y] = [screen[3 * a], screen[3 * a + 1]];

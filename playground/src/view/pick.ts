@@ -21,8 +21,8 @@ export function pick(
   if (best) return best;
   // a link is thin: a smaller reach keeps empty canvas empty
   nearest = reach / 2;
-  for (const [index, { a, b }] of structure.links.entries()) {
-    const away = distanceToSegment(x, y, screen, 3 * a, 3 * b);
+  for (const [index, { particles }] of structure.links.entries()) {
+    const away = distanceToSegment(x, y, screen, 3 * particles[0], 3 * particles[1]);
     if (away < nearest) [nearest, best] = [away, { kind: 'link', index }];
   }
   return best;

@@ -16,14 +16,12 @@ export interface Arrow {
 export interface Picture {
   structure: Structure;
   positions: Float64Array;
-  /** the engine's shapes, without those of broken links */
+  /** the engine's shapes without broken links */
   shapes: Shape[];
   /** the direction of gravity, a unit vector */
   down: number[];
   /** N, one per link */
   tension: Float64Array;
-  /** places of the links that are broken */
-  broken: Set<number>;
   /** N at the ends of the colour scale */
   tensionLimit: number;
   /** positions of the comparison run, or null */

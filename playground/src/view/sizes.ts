@@ -17,6 +17,8 @@ export class Sizes {
   radii = new Float64Array(0);
   /** width of a link, px */
   link = 3.5;
+  /** half the width of a spring's zig-zag, px */
+  coil = 5;
   /** true where rods are so short on the screen that the smallest particles would touch and hide every rod */
   crowded = false;
   private structure: Structure | null = null;
@@ -42,8 +44,10 @@ export class Sizes {
 
   private measure(structure: Structure): void {
     this.structure = structure;
-    const { links } = structure;
-    const lengths = links.filter(isRod).map(({ longest }) => longest!);
+    const { links, shapes } = structure;
+    const springs = shapes.filter(({ kind }) => kind === 'spring').length;
+    this.coil = springs > 60 ? 3 : 5;
+    const lengths = links.filter(isRod).map(({ size }) => size);
     this.meanRod = lengths.reduce((sum, length) => sum + length, 0) / lengths.length;
     this.link = links.length > 300 ? 2 : links.length > 60 ? 2.75 : 3.5;
   }

@@ -1,6 +1,6 @@
 // The canvas, its camera and the drawing loop: lets time go on, then draws the state.
 
-import type { Shape, Simulation } from '../engine';
+import type { Simulation } from '../engine';
 import type { Page } from '../page';
 import { unbroken } from '../session/links';
 import { niceCeiling } from '../session/numbers';
@@ -28,7 +28,6 @@ export class Stage {
   private largest = 0;
   onTensionLimit: (limit: number) => void = () => {};
   private box: Box | null = null;
-  private shapes: Shape[] = [];
   private request = 0;
   /** true until a person moves the view: only then may it follow a changed window */
   private fitted = true;
@@ -67,7 +66,6 @@ export class Stage {
     this.camera = new Camera(structure.dimension, Math.abs(gravity[1]) > Math.abs(gravity[2]) ? 1 : 2);
     this.camera.inset = inset;
     this.box = boxOfMotion(run.simulation, structure);
-    this.shapes = run.simulation.shapes(run.simulation.time);
     this.hover = null;
     this.largest = 0;
     this.view.resize(this.camera);
@@ -126,15 +124,16 @@ export class Stage {
       return;
     }
     const tension = this.readTension();
-    const broken = new Set(run.simulation.broken());
     this.followTension(tension);
     const picture: Picture = {
       structure,
       positions: this.smoothed(run.simulation),
-      shapes: unbroken(this.shapesNow(run.simulation), structure.links, broken),
+      shapes: unbroken(
+        run.simulation.shapesAt(structure.shapes, run.simulation.time - this.behind()),
+        new Set(run.simulation.broken()),
+      ),
       down: session.down,
       tension,
-      broken,
       tensionLimit: this.tensionLimit,
       ghost: comparison.ghost ? this.smoothed(comparison.ghost.simulation) : null,
       ghostStopped: comparison.stopped !== null,
@@ -161,13 +160,6 @@ export class Stage {
     const velocities = simulation.velocities();
     for (let i = 0; i < positions.length; i += 1) positions[i] -= back * velocities[i];
     return positions;
-  }
-
-  /** Asks again only for driven shapes. */
-  private shapesNow(simulation: Simulation): Shape[] {
-    if (this.shapes.some(({ driven }) => driven))
-      this.shapes = simulation.shapes(simulation.time - this.behind());
-    return this.shapes;
   }
 
   private readTension(): Float64Array {

@@ -113,10 +113,10 @@ export const lengthError = (page: Page) =>
     const d = structure.dimension;
     const point = (i: number) => positions.slice(d * i, d * i + d);
     return Math.max(
-      ...structure.links.map(({ a, b, shortest, longest }) => {
-        if (shortest !== longest) return 0;
+      ...structure.links.map(({ kind, size, particles: [a, b] }) => {
+        if (kind !== 'rod') return 0;
         const other = point(b);
-        return Math.abs(Math.hypot(...point(a).map((x, k) => x - other[k])) - longest!);
+        return Math.abs(Math.hypot(...point(a).map((x, k) => x - other[k])) - size);
       }),
     );
   });

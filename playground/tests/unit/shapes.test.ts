@@ -1,13 +1,17 @@
 import { expect, it } from 'vitest';
 import type { Shape, Structure } from '../../src/engine';
+import type { Layer } from '../../src/view/brush';
 import { Camera } from '../../src/view/camera';
+import { drawNails } from '../../src/view/layers/nails';
 import { drawShapes } from '../../src/view/layers/shapes';
 import type { Picture } from '../../src/view/picture';
 import { Sizes } from '../../src/view/sizes';
 import { colours } from './colours';
 
 /** The calls that draw shapes on two particles 3 m apart, one metre being 100 px, in the middle of 800 × 600. */
-function drawn(...shapes: Partial<Shape>[]): string[] {
+const drawn = (...shapes: Partial<Shape>[]) => drawnBy(drawShapes, ...shapes);
+
+function drawnBy(layer: Layer, ...shapes: Partial<Shape>[]): string[] {
   const calls: string[] = [];
   const round = (...numbers: number[]) => numbers.map((x) => Math.round(x)).join(',');
   const context = {
@@ -36,11 +40,21 @@ function drawn(...shapes: Partial<Shape>[]): string[] {
     points: new Float64Array(0),
     size: 0,
     driven: false,
+    of: { list: 'constraint' as const, index: 0 },
+    name: '',
+    link: null,
     ...shape,
   }));
-  const structure = { dimension: 2 } as Structure;
+  const structure = {
+    dimension: 2,
+    masses: Float64Array.of(1, 1),
+    links: [],
+    shapes: whole,
+  } as unknown as Structure;
   const picture = { structure, positions, shapes: whole, down: [0, -1] } as unknown as Picture;
-  drawShapes({ context, camera, screen, palette: colours('light'), sizes: new Sizes() }, picture);
+  const sizes = new Sizes();
+  sizes.fit(structure, camera.scale);
+  layer({ context, camera, screen, palette: colours('light'), sizes }, picture);
   return calls;
 }
 
@@ -87,4 +101,21 @@ it('draws a box as one filled rectangle', () => {
     'Z',
     'fill',
   ]);
+});
+
+it('draws a nail around its point, the same whether it is driven or at rest', () => {
+  const nail = { kind: 'nail' as const, particles: [1], points: Float64Array.from([3, 1, 0]) };
+  const still = drawnBy(drawNails, nail);
+  // two particles of usual mass have a radius of 6 px
+  expect(still.slice(0, 2)).toEqual(['M710,200', 'A700,200,10']);
+  expect(drawnBy(drawNails, { ...nail, driven: true })).toEqual(still);
+  expect(drawn(nail)).toEqual(['solid']);
+});
+
+it('draws a spring as a zig-zag between its particles', () => {
+  const spring = drawn({ kind: 'spring' });
+  expect(spring[0]).toBe('M400,300');
+  expect(spring).toContain('L700,300');
+  // six turns: thirteen corners, five px to either side
+  expect(spring.filter((call) => /,(295|305)$/.test(call)).length).toBe(13);
 });

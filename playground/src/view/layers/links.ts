@@ -1,6 +1,6 @@
 // Rods, and ropes and struts that carry a force, coloured by tension; then the highlight of a link.
 
-import type { Link } from '../../engine';
+import { isLink, type LinkShape } from '../../engine';
 import { isRod } from '../../session/links';
 import type { Brush } from '../brush';
 import { traceChains, traceSegment } from '../glyphs';
@@ -16,11 +16,8 @@ export function drawLinks(brush: Brush, picture: Picture): void {
 
 /** One path a colour: a thousand links cost at most as many strokes as there are colours. */
 function drawByColour({ context, palette, screen, sizes }: Brush, picture: Picture): void {
-  const { links } = picture.structure;
-  const byStep: Link[][] = Array.from({ length: TENSION_STEPS }, () => []);
-  for (const [i, link] of links.entries()) {
-    if (isStraight(picture, i)) byStep[tensionStep(picture.tension[i], picture.tensionLimit)].push(link);
-  }
+  const byStep: LinkShape[][] = Array.from({ length: TENSION_STEPS }, () => []);
+  for (const shape of straight(picture)) byStep[stepOf(shape, picture)].push(shape);
   context.lineWidth = sizes.link;
   context.lineCap = 'round';
   context.lineJoin = 'round';
@@ -35,19 +32,20 @@ function drawByColour({ context, palette, screen, sizes }: Brush, picture: Pictu
 
 /** Far links first, thinner and paler: the depth cue of a view without perspective. */
 function drawByDepth({ context, palette, screen, sizes }: Brush, picture: Picture): void {
-  const { links } = picture.structure;
   const [near, far] = depthRange(screen);
-  const depth = links.map(({ a, b }) => (screen[3 * a + 2] + screen[3 * b + 2]) / 2);
-  const order = links.map((_, i) => i).filter((i) => isStraight(picture, i));
-  order.sort((i, j) => depth[i] - depth[j]);
+  const order = straight(picture).map((shape) => {
+    const [a, b] = shape.particles;
+    return { shape, depth: (screen[3 * a + 2] + screen[3 * b + 2]) / 2 };
+  });
+  order.sort((one, other) => one.depth - other.depth);
   context.lineCap = 'round';
-  for (const i of order) {
-    const part = (depth[i] - far) / (near - far || 1);
+  for (const { shape, depth } of order) {
+    const part = (depth - far) / (near - far || 1);
     context.globalAlpha = 0.45 + 0.55 * part;
     context.lineWidth = sizes.link * (0.6 + 0.6 * part);
-    context.strokeStyle = palette.tension[tensionStep(picture.tension[i], picture.tensionLimit)];
+    context.strokeStyle = palette.tension[stepOf(shape, picture)];
     context.beginPath();
-    traceSegment(context, screen, links[i]);
+    traceSegment(context, screen, shape.particles);
     context.stroke();
   }
   context.globalAlpha = 1;
@@ -74,12 +72,16 @@ function highlight(
   context.strokeStyle = palette.accent;
   context.lineWidth = sizes.link + 7;
   context.beginPath();
-  traceSegment(context, screen, structure.links[selection.index]);
+  traceSegment(context, screen, structure.links[selection.index].particles);
   context.stroke();
   context.globalAlpha = 1;
 }
 
-/** A rod is straight until it breaks, a rope or strut while it carries a force; otherwise its shape alone is drawn. */
-function isStraight({ structure, tension, broken }: Picture, place: number): boolean {
-  return isRod(structure.links[place]) ? !broken.has(place) : Math.abs(tension[place]) > 0;
+/** Rods, and the ropes and struts that carry a force; the shapes layer draws the other ropes and struts alone. */
+function straight({ shapes, tension }: Picture): LinkShape[] {
+  return shapes.filter(isLink).filter((shape) => isRod(shape) || Math.abs(tension[shape.link.place]) > 0);
+}
+
+function stepOf({ link }: LinkShape, { tension, tensionLimit }: Picture): number {
+  return tensionStep(tension[link.place], tensionLimit);
 }

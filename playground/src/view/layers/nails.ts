@@ -1,21 +1,20 @@
-// Nails that stay where they are.
+// Nails, in front of links and behind their particles.
 
-import type { Brush } from '../brush';
+import { type Brush, project } from '../brush';
 import { traceNail } from '../glyphs';
 import type { Picture } from '../picture';
 
-export function drawNails(
-  { context, camera, palette, sizes }: Brush,
-  { structure: { nails } }: Picture,
-): void {
+/** The ring of a nail is so much wider than its particle, px. */
+const GAP = 4;
+
+export function drawNails({ context, camera, palette, sizes }: Brush, { shapes }: Picture): void {
+  const nails = shapes.filter(({ kind }) => kind === 'nail');
   if (nails.length === 0) return;
-  const at = [0, 0, 0];
   context.strokeStyle = palette.ink;
   context.lineWidth = 1.5;
   context.beginPath();
-  for (const nail of nails) {
-    camera.project(nail.at, 0, at);
-    traceNail(context, at[0], at[1], sizes.radii[nail.particle] + 4);
+  for (const { particles, points } of nails) {
+    traceNail(context, ...project(camera, points, 0), sizes.radii[particles[0]] + GAP);
   }
   context.stroke();
 }

@@ -1,5 +1,6 @@
-// The engine's shapes: whatever holds or pushes particles. One path a style keeps scenes with many shapes fast.
+// The engine's shapes behind links and particles. One path a style keeps scenes with many shapes fast.
 
+import type { Shape, ShapeKind } from '../../engine';
 import type { Brush } from '../brush';
 import type { Picture } from '../picture';
 import { STYLES } from '../shapes/styles';
@@ -9,8 +10,9 @@ export function drawShapes(brush: Brush, picture: Picture): void {
   const { context, palette } = brush;
   context.lineCap = 'round';
   context.lineJoin = 'round';
+  const byKind = shapesByKind(picture.shapes);
   for (const { kinds, colour, width, dash, fill, trace } of STYLES) {
-    const shapes = picture.shapes.filter(({ kind }) => kinds.includes(kind));
+    const shapes = kinds.flatMap((kind) => byKind.get(kind) ?? []);
     if (shapes.length === 0) continue;
     context.beginPath();
     for (const shape of shapes) trace(brush, shape, picture);
@@ -27,4 +29,14 @@ export function drawShapes(brush: Brush, picture: Picture): void {
     context.stroke();
   }
   context.setLineDash([]);
+}
+
+function shapesByKind(shapes: readonly Shape[]): Map<ShapeKind, Shape[]> {
+  const byKind = new Map<ShapeKind, Shape[]>();
+  for (const shape of shapes) {
+    const same = byKind.get(shape.kind);
+    if (same) same.push(shape);
+    else byKind.set(shape.kind, [shape]);
+  }
+  return byKind;
 }

@@ -6,6 +6,9 @@ import type { Vec3 } from '../camera';
 import { traceSpring } from '../glyphs';
 import type { Picture } from '../picture';
 
+/** Turns of a spring's zig-zag. */
+const COIL_TURNS = 6;
+
 /** Within this part of its length a rope counts as taut: half a pixel of a rope across the screen. */
 const TAUT = 5e-4;
 
@@ -59,5 +62,5 @@ export function traceSlack(brush: Brush, shape: Shape, picture: Picture): void {
 
 export function traceCoil(brush: Brush, shape: Shape): void {
   const [ax, ay, bx, by] = ends(brush, shape);
-  traceSpring(brush.context, ax, ay, bx, by, 5, 6);
+  traceSpring(brush.context, ax, ay, bx, by, brush.sizes.coil, COIL_TURNS);
 }

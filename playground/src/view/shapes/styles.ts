@@ -1,8 +1,7 @@
-// How each kind of shape is drawn.
+// The style of each kind of shape. Nails and the colours of tension have layers of their own.
 
 import type { Shape, ShapeKind } from '../../engine';
-import { type Brush, project } from '../brush';
-import { traceNail } from '../glyphs';
+import type { Brush } from '../brush';
 import type { Picture } from '../picture';
 import { isBeyond, traceBetween, traceCoil, traceSlack, traceTaut } from './between';
 import { traceAngle, traceGuide } from './guides';
@@ -19,7 +18,7 @@ import {
 
 export interface Style {
   kinds: readonly ShapeKind[];
-  /** which colour of the palette */
+  /** its name in the palette */
   colour: 'ink' | 'muted' | 'guide' | 'background' | 'accent' | 'spring';
   /** of the outline, px; 0 for none */
   width: number;
@@ -59,15 +58,8 @@ export const STYLES: readonly Style[] = [
     dash: [6, 5],
     trace: (brush, shape, picture) => isBeyond(picture, shape) && traceBetween(brush, shape),
   },
-  { kinds: ['spring'], colour: 'spring', width: 1.5, trace: traceCoil },
-  { kinds: ['rod', 'actuator'], colour: 'muted', width: 2.5, trace: traceBetween },
-  { kinds: ['rod', 'actuator'], colour: 'muted', width: 7, trace: traceActuator },
+  { kinds: ['driven-rod', 'actuator'], colour: 'muted', width: 2.5, trace: traceBetween },
+  { kinds: ['driven-rod', 'actuator'], colour: 'muted', width: 7, trace: traceActuator },
   { kinds: ['angle'], colour: 'accent', width: 2, trace: traceAngle },
-  {
-    kinds: ['nail'],
-    /** which colour of the palette */
-    colour: 'ink',
-    width: 1.5,
-    trace: ({ context, camera }, shape) => traceNail(context, ...project(camera, shape.points, 0), 9),
-  },
+  { kinds: ['spring'], colour: 'spring', width: 1.5, trace: traceCoil },
 ];
