@@ -1,22 +1,22 @@
-// The shapes of what leads particles: wires, endless lines, rings, angles.
+// Traces shapes that lead particles: wires, endless lines, rings, angles.
 
-import type { Mark } from '../engine';
-import type { Vec3 } from './camera';
-import { traceRing } from './hold-shapes';
-import { ends, type Pen, project } from './pen';
+import type { Shape } from '../../engine';
+import { type Brush, ends, project } from '../brush';
+import type { Vec3 } from '../camera';
+import { traceRing } from './solids';
 
 const ANGLE_RADIUS = 24;
-/** How far the direction from which an angle counts goes beyond the arc, px. */
+/** An angle may count from a direction: its line ends so far beyond the arc, px. */
 const REFERENCE = 10;
 
-/** What a bead runs along: a wire, an endless line or a ring. */
-export function traceGuide(pen: Pen, mark: Mark): void {
-  const { context, camera } = pen;
-  if (mark.kind === 'ring') traceRing(pen, mark);
-  else if (mark.kind === 'line') traceLine(pen, mark);
+/** A guide of a bead: a wire, an endless line or a ring. */
+export function traceGuide(brush: Brush, shape: Shape): void {
+  const { context, camera } = brush;
+  if (shape.kind === 'ring') traceRing(brush, shape);
+  else if (shape.kind === 'line') traceLine(brush, shape);
   else {
-    for (let i = 0; 3 * i < mark.points.length; i += 1) {
-      const [x, y] = project(camera, mark.points, i);
+    for (let i = 0; 3 * i < shape.points.length; i += 1) {
+      const [x, y] = project(camera, shape.points, i);
       if (i === 0) context.moveTo(x, y);
       else context.lineTo(x, y);
     }
@@ -24,12 +24,12 @@ export function traceGuide(pen: Pen, mark: Mark): void {
 }
 
 /** Across the whole canvas, wherever the view is. */
-function traceLine(pen: Pen, mark: Mark): void {
-  const { context, camera } = pen;
-  let [ax, ay, bx, by] = ends(pen, mark);
-  if (mark.particles.length < 2) {
+function traceLine(brush: Brush, shape: Shape): void {
+  const { context, camera } = brush;
+  let [ax, ay, bx, by] = ends(brush, shape);
+  if (shape.particles.length < 2) {
     const [ox, oy] = project(camera, [0, 0, 0], 0);
-    // the last point is a direction: where the origin would go with it, less where it is
+    // the last point is a direction: the difference of two points on the screen, of which one is the origin
     [bx, by] = [ax + bx - ox, ay + by - oy];
   }
   const length = Math.hypot(bx - ax, by - ay);
@@ -43,7 +43,7 @@ function traceLine(pen: Pen, mark: Mark): void {
 }
 
 /** An arc at the corner from the first arm, or the direction, to the second, the shorter way. */
-export function traceAngle({ context, camera, screen }: Pen, { particles, points }: Mark): void {
+export function traceAngle({ context, camera, screen }: Brush, { particles, points }: Shape): void {
   const arm = (a: number, b: number) =>
     Math.atan2(screen[3 * b + 1] - screen[3 * a + 1], screen[3 * b] - screen[3 * a]);
   const [c, d] = particles.slice(-2);
@@ -55,7 +55,7 @@ export function traceAngle({ context, camera, screen }: Pen, { particles, points
       : Math.atan2(-along(camera.up), along(camera.right));
   const turn = arm(c, d) - from;
   const shorter = turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI));
-  // the direction from which it counts is seen where no arm shows it
+  // a line shows the direction from which the angle counts where no arm lies along it
   if (particles.length < 4 || particles[0] !== c) {
     context.moveTo(x, y);
     const far = ANGLE_RADIUS + REFERENCE;

@@ -1,14 +1,14 @@
-// Looks ahead to find how much room a scene's motion takes, so that the first view holds all of it.
+// Runs a scene ahead to find the room that its motion takes, so that the first view shows all of it.
 
-import type { Mark, Simulation, Structure } from '../engine';
+import type { Shape, Simulation, Structure } from '../engine';
 import { type Box, emptyBox, include } from '../view/camera';
 import { Run } from './run';
 
-/** Simulated time looked ahead, s. */
+/** Simulated time of the preview, s. */
 const AHEAD = 3;
-/** Particle steps the look may cost: a large scene gets a shorter look instead of a late start. */
+/** Steps of one particle that a preview may cost: a large scene gets a shorter preview instead of a late start. */
 const EFFORT = 40_000;
-/** What falls or flies away must not shrink the rest to a dot: the view grows to at most this many times the scene. */
+/** The view grows to at most this many times the scene: particles that fly away must not shrink the rest to a dot. */
 const GROWTH = 2.5;
 
 /** The box around the start and the first seconds of motion. */
@@ -16,15 +16,14 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   const { dimension, duration } = structure;
   const still = emptyBox(dimension);
   include(still, simulation.positions());
-  for (const nail of structure.nails) include(still, nail.at.slice(0, dimension));
-  for (const mark of simulation.marks(simulation.time)) {
-    for (const corner of extentOf(mark, dimension)) include(still, corner);
+  for (const shape of structure.shapes) {
+    for (const corner of extentOf(shape, dimension)) include(still, corner);
   }
   const box: Box = { min: [...still.min], max: [...still.max] };
 
   const { h } = simulation.controls();
   const particles = Math.max(1, structure.masses.length);
-  // what comes after the scene's own time is nothing to make room for
+  // motion after the scene's own duration needs no room
   const frames = Math.min(Math.min(AHEAD, duration) / h, EFFORT / particles);
   const run = Run.open(simulation.text, simulation.sourceName);
   for (let frame = 0; frame < frames && run.step(); frame += 1) {
@@ -34,11 +33,12 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   return within(box, still);
 }
 
-/** Points that show all of a mark that ends somewhere; what is endless is seen from anywhere. */
-function extentOf({ kind, particles, points, size }: Mark, dimension: number): number[][] {
+/** Points around a shape of finite size; an endless shape is in view anywhere and gets none. */
+function extentOf({ kind, particles, points, size }: Shape, dimension: number): number[][] {
   const point = (i: number) => Array.from(points.subarray(3 * i, 3 * i + dimension));
   const around = (centre: number[], reach: number[]) =>
     [-1, 1].map((side) => centre.map((x, k) => x + side * reach[k]));
+  if (kind === 'nail') return [point(0)];
   if (kind === 'wire') return Array.from({ length: points.length / 3 }, (_, i) => point(i));
   if (kind === 'box') return around(point(0), point(1));
   if ((kind === 'ring' || kind === 'ball' || kind === 'bowl') && particles.length === 0)

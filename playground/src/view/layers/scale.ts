@@ -1,36 +1,12 @@
-// The quiet background: a metre grid in 2D, three axes in 3D, and a scale bar that says how long a metre is.
+// The scale bar at the lower left, which says how long a metre is, and in 3D the three axes above it.
 
-import { format, niceCeiling } from '../session/numbers';
-import type { Camera } from './camera';
-import type { Palette } from './palette';
-
-/** Grid lines come about this far apart, px. */
-const SPACING = 90;
-
-export function drawGrid(context: CanvasRenderingContext2D, camera: Camera, palette: Palette): void {
-  if (camera.dimension === 3) return;
-  const step = niceCeiling(SPACING / camera.scale);
-  const [left, top] = camera.unproject(0, 0, [0, 0]);
-  const [right, bottom] = camera.unproject(camera.width, camera.height, [0, 0]);
-  const [mx, my] = camera.middle;
-  context.beginPath();
-  for (let k = Math.ceil(left / step); k * step <= right; k += 1) {
-    const x = Math.round(mx + (k * step - camera.centre[0]) * camera.scale) + 0.5;
-    context.moveTo(x, 0);
-    context.lineTo(x, camera.height);
-  }
-  for (let k = Math.ceil(bottom / step); k * step <= top; k += 1) {
-    const y = Math.round(my - (k * step - camera.centre[1]) * camera.scale) + 0.5;
-    context.moveTo(0, y);
-    context.lineTo(camera.width, y);
-  }
-  context.strokeStyle = palette.grid;
-  context.lineWidth = 1;
-  context.stroke();
-}
+import { format, niceCeiling } from '../../session/numbers';
+import type { Brush } from '../brush';
+import type { Camera } from '../camera';
+import { SPACING } from './grid';
 
 /** A bar of a round number of metres at the lower left of the free canvas; the axes above it in 3D. */
-export function drawScale(context: CanvasRenderingContext2D, camera: Camera, palette: Palette): void {
+export function drawScale({ context, camera, palette }: Brush): void {
   const metres = niceCeiling(SPACING / camera.scale / 2.5);
   const length = metres * camera.scale;
   const x = camera.inset.left + 20;

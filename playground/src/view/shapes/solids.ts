@@ -1,9 +1,10 @@
-// The shapes of marks that are more than a line: ground, planes, balls, boxes, rings, wheels, areas, a piston.
+// Traces shapes that are more than a line: ground, planes, balls, boxes, rings, wheels, areas, a piston.
 
-import type { Mark } from '../engine';
-import { niceCeiling } from '../session/numbers';
-import type { Vec3 } from './camera';
-import { ends, type Pen, project } from './pen';
+import type { Shape } from '../../engine';
+import { niceCeiling } from '../../session/numbers';
+import { type Brush, ends, project } from '../brush';
+import type { Vec3 } from '../camera';
+import { traceCircle } from '../glyphs';
 
 /** Strokes of a hatch are this far apart and go this deep, px. */
 const HATCH = 12;
@@ -14,12 +15,12 @@ const PLANE_CELLS = 8;
 const RING_PIECES = 96;
 
 /** In the plane a line across the canvas, hatched below; in space ground is a plane. */
-export function traceGround(pen: Pen, mark: Mark): void {
-  const { context, camera } = pen;
+export function traceGround(brush: Brush, shape: Shape): void {
+  const { context, camera } = brush;
   if (camera.dimension === 3) return;
-  const [x, y] = project(camera, mark.points, 0);
+  const [x, y] = project(camera, shape.points, 0);
   // the screen's y points down
-  const [nx, ny] = [mark.points[3], -mark.points[4]];
+  const [nx, ny] = [shape.points[3], -shape.points[4]];
   const [ux, uy] = [-ny, nx];
   const [mx, my] = camera.middle;
   const reach = camera.width + camera.height;
@@ -36,8 +37,8 @@ export function traceGround(pen: Pen, mark: Mark): void {
   }
 }
 
-/** Lines of a grid in a plane, around where it is nearest to the middle of the view. */
-export function tracePlane({ context, camera }: Pen, { points }: Mark): void {
+/** A grid in a plane, around its point nearest to the middle of the view. */
+export function tracePlane({ context, camera }: Brush, { points }: Shape): void {
   if (camera.dimension === 2) return;
   const point = [points[0], points[1], points[2]];
   const [n, u, v] = frame([points[3], points[4], points[5]]);
@@ -61,28 +62,28 @@ export function tracePlane({ context, camera }: Pen, { points }: Mark): void {
   }
 }
 
-export function traceRing(pen: Pen, mark: Mark): void {
-  traceAround(pen, mark, Array.from(mark.points.subarray(mark.points.length - 3)));
+export function traceRing(brush: Brush, shape: Shape): void {
+  traceAround(brush, shape, Array.from(shape.points.subarray(shape.points.length - 3)));
 }
 
-/** Of a ball in space the circles across the three axes: without them it is a disc. */
-export function traceGreatCircles(pen: Pen, mark: Mark): void {
-  if (pen.camera.dimension === 2) return;
+/** The circles of a ball across the three axes: without them a ball in space looks like a disc. */
+export function traceGreatCircles(brush: Brush, shape: Shape): void {
+  if (brush.camera.dimension === 2) return;
   for (const k of [0, 1, 2]) {
     traceAround(
-      pen,
-      mark,
+      brush,
+      shape,
       [0, 1, 2].map((j) => (j === k ? 1 : 0)),
     );
   }
 }
 
-/** A circle about the first end of a mark, across an axis. */
-function traceAround(pen: Pen, mark: Mark, axis: number[]): void {
-  const { context, camera } = pen;
-  const [x, y] = ends(pen, mark);
+/** A circle about the first end of a shape, across an axis. */
+function traceAround(brush: Brush, shape: Shape, axis: number[]): void {
+  const { context, camera } = brush;
+  const [x, y] = ends(brush, shape);
   const [, u, v] = frame(axis);
-  const radius = mark.size * camera.scale;
+  const radius = shape.size * camera.scale;
   const reach = (to: Vec3, along: Vec3) => radius * dot(to, along);
   for (let i = 0; i < RING_PIECES; i += 1) {
     const [c, s] = [Math.cos((2 * Math.PI * i) / RING_PIECES), Math.sin((2 * Math.PI * i) / RING_PIECES)];
@@ -95,13 +96,13 @@ function traceAround(pen: Pen, mark: Mark, axis: number[]): void {
 }
 
 /** The thick half of a piston, from its first end to the middle. */
-export function traceActuator(pen: Pen, mark: Mark): void {
-  const [ax, ay, bx, by] = ends(pen, mark);
-  pen.context.moveTo(ax, ay);
-  pen.context.lineTo((ax + bx) / 2, (ay + by) / 2);
+export function traceActuator(brush: Brush, shape: Shape): void {
+  const [ax, ay, bx, by] = ends(brush, shape);
+  brush.context.moveTo(ax, ay);
+  brush.context.lineTo((ax + bx) / 2, (ay + by) / 2);
 }
 
-export function traceArea({ context, screen }: Pen, { particles }: Mark): void {
+export function traceArea({ context, screen }: Brush, { particles }: Shape): void {
   for (const [i, particle] of particles.entries()) {
     const [x, y] = [screen[3 * particle], screen[3 * particle + 1]];
     if (i === 0) context.moveTo(x, y);
@@ -110,23 +111,18 @@ export function traceArea({ context, screen }: Pen, { particles }: Mark): void {
   context.closePath();
 }
 
-function traceCircle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
-  context.moveTo(x + radius, y);
-  context.arc(x, y, radius, 0, 2 * Math.PI);
+export function traceBall(brush: Brush, shape: Shape): void {
+  const [x, y] = ends(brush, shape);
+  traceCircle(brush.context, x, y, shape.size * brush.camera.scale);
 }
 
-export function traceBall(pen: Pen, mark: Mark): void {
-  const [x, y] = ends(pen, mark);
-  traceCircle(pen.context, x, y, mark.size * pen.camera.scale);
-}
-
-/** The rectangle, or in space the faces that are seen: they lie side by side, so that all is filled alike. */
-export function traceBox({ context, camera }: Pen, { points }: Mark): void {
+/** A rectangle, or in space the visible faces of a box: faces do not overlap, so that all have the same opacity. */
+export function traceBox({ context, camera }: Brush, { points }: Shape): void {
   for (const axis of camera.dimension === 2 ? [2] : [0, 1, 2]) {
     const side = Math.sign(camera.towards[axis]);
     if (side === 0) continue;
     const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    // all the same way round on the screen: faces of two boxes add up and do not cancel
+    // every face has the same sense on the screen: faces of two boxes add up and do not cancel
     for (const [n, [a, b]] of [
       [-1, -1],
       [side, -side],
@@ -145,13 +141,13 @@ export function traceBox({ context, camera }: Pen, { points }: Mark): void {
   }
 }
 
-export function traceWheel(pen: Pen, mark: Mark): void {
-  const [x, y, rimX, rimY] = ends(pen, mark);
-  const radius = mark.size * pen.camera.scale;
-  traceCircle(pen.context, x, y, radius);
+export function traceWheel(brush: Brush, shape: Shape): void {
+  const [x, y, rimX, rimY] = ends(brush, shape);
+  const radius = shape.size * brush.camera.scale;
+  traceCircle(brush.context, x, y, radius);
   const angle = Math.atan2(rimY - y, rimX - x);
-  pen.context.moveTo(x, y);
-  pen.context.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+  brush.context.moveTo(x, y);
+  brush.context.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
 }
 
 /** The unit vector of a direction and two across it. */

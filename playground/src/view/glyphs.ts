@@ -1,6 +1,6 @@
-// The marks on the canvas: zig-zag springs, nails, fixed particles, arrows. Each takes screen coordinates in px.
+// The signs on the canvas: zig-zag springs, nails, discs, squares, arrows, lines. All take screen coordinates in px.
 
-/** A spring from one point to another: straight ends, a zig-zag between whose turns do not depend on its length. */
+/** A spring between two points: straight ends and a zig-zag whose number of turns does not depend on its length. */
 export function traceSpring(
   context: CanvasRenderingContext2D,
   ax: number,
@@ -25,10 +25,14 @@ export function traceSpring(
   context.lineTo(bx, by);
 }
 
-/** A nail: a ring with a cross, drawn under its particle. */
-export function traceNail(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+export function traceCircle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.moveTo(x + radius, y);
   context.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
+/** A nail: a ring with a cross. */
+export function traceNail(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  traceCircle(context, x, y, radius);
   const arm = radius + 4;
   context.moveTo(x - arm, y);
   context.lineTo(x + arm, y);
@@ -36,7 +40,7 @@ export function traceNail(context: CanvasRenderingContext2D, x: number, y: numbe
   context.lineTo(x, y + arm);
 }
 
-/** A fixed particle: a square, because nothing moves it. */
+/** A fixed particle: a square. */
 export function traceFixed(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.rect(x - radius, y - radius, 2 * radius, 2 * radius);
 }
@@ -68,14 +72,24 @@ export function drawArrow(
   context.fillText(label, tx + ux * 13, ty + uy * 13);
 }
 
-/** Points of a chain nearer than this to the last one drawn are left out, px: below what anti-aliasing shows. */
+/** A straight line between two particles. */
+export function traceSegment(
+  context: CanvasRenderingContext2D,
+  screen: Float64Array,
+  [a, b]: readonly number[],
+): void {
+  context.moveTo(screen[3 * a], screen[3 * a + 1]);
+  context.lineTo(screen[3 * b], screen[3 * b + 1]);
+}
+
+/** Points of a chain nearer than this to the last point drawn are left out, px: anti-aliasing hides the difference. */
 const FINEST = 0.75;
 
-/** Rods as lines; a run of rods that go on from each other is one line, its points no finer than a screen shows. */
+/** Rods as lines; rods that follow one another are one line, its points no finer than a screen shows. */
 export function traceChains(
   context: CanvasRenderingContext2D,
   screen: Float64Array,
-  rods: readonly { a: number; b: number }[],
+  rods: readonly { particles: readonly number[] }[],
 ): void {
   let [end, x, y] = [-1, 0, 0];
   let owed = false;
@@ -83,7 +97,8 @@ export function traceChains(
     if (owed) context.lineTo(screen[3 * end], screen[3 * end + 1]);
     owed = false;
   };
-  for (const { a, b } of rods) {
+  for (const { particles } of rods) {
+    const [a, b] = [particles[0], particles[1]];
     if (a !== end) {
       settle();
       [x, y] = [screen[3 * a], screen[3 * a + 1]];

@@ -1,13 +1,17 @@
 import { expect, it } from 'vitest';
-import type { Mark, Structure } from '../../src/engine';
-import { grouped } from '../../src/session/scenes';
+import type { Shape, Structure } from '../../src/engine';
+import type { Layer } from '../../src/view/brush';
 import { Camera } from '../../src/view/camera';
-import { drawHolds } from '../../src/view/holds';
-import { LIGHT } from '../../src/view/palette';
+import { drawNails } from '../../src/view/layers/nails';
+import { drawShapes } from '../../src/view/layers/shapes';
 import type { Picture } from '../../src/view/picture';
+import { Sizes } from '../../src/view/sizes';
+import { colours } from './colours';
 
-/** The calls that draw marks on two particles 3 m apart, one metre being 100 px, in the middle of 800 × 600. */
-function drawn(...marks: Partial<Mark>[]): string[] {
+/** The calls that draw shapes on two particles 3 m apart, one metre being 100 px, in the middle of 800 × 600. */
+const drawn = (...shapes: Partial<Shape>[]) => drawnBy(drawShapes, ...shapes);
+
+function drawnBy(layer: Layer, ...shapes: Partial<Shape>[]): string[] {
   const calls: string[] = [];
   const round = (...numbers: number[]) => numbers.map((x) => Math.round(x)).join(',');
   const context = {
@@ -30,17 +34,27 @@ function drawn(...marks: Partial<Mark>[]): string[] {
     camera.project(positions, i, at);
     screen.set(at, 3 * i);
   }
-  const whole = marks.map((mark) => ({
+  const whole = shapes.map((shape) => ({
     kind: 'tie' as const,
     particles: [0, 1],
     points: new Float64Array(0),
     size: 0,
     driven: false,
-    ...mark,
+    of: { list: 'constraint' as const, index: 0 },
+    name: '',
+    link: null,
+    ...shape,
   }));
-  const structure = { dimension: 2 } as Structure;
-  const picture = { structure, positions, marks: whole, down: [0, -1] } as unknown as Picture;
-  drawHolds(context, picture, screen, camera, LIGHT);
+  const structure = {
+    dimension: 2,
+    masses: Float64Array.of(1, 1),
+    links: [],
+    shapes: whole,
+  } as unknown as Structure;
+  const picture = { structure, positions, shapes: whole, down: [0, -1] } as unknown as Picture;
+  const sizes = new Sizes();
+  sizes.fit(structure, camera.scale);
+  layer({ context, camera, screen, palette: colours('light'), sizes }, picture);
   return calls;
 }
 
@@ -89,11 +103,19 @@ it('draws a box as one filled rectangle', () => {
   ]);
 });
 
-it('puts scenes under their headings in the order in which they come', () => {
-  const scene = (name: string, group: string) => ({ name, group, title: name, text: '' });
-  const groups = grouped([scene('a', 'one'), scene('b', 'two'), scene('c', 'one')]);
-  expect(groups.map(({ heading, scenes }) => [heading, scenes.map(({ name }) => name)])).toEqual([
-    ['one', ['a', 'c']],
-    ['two', ['b']],
-  ]);
+it('draws a nail around its point, the same whether it is driven or at rest', () => {
+  const nail = { kind: 'nail' as const, particles: [1], points: Float64Array.from([3, 1, 0]) };
+  const still = drawnBy(drawNails, nail);
+  // two particles of usual mass have a radius of 6 px
+  expect(still.slice(0, 2)).toEqual(['M710,200', 'A700,200,10']);
+  expect(drawnBy(drawNails, { ...nail, driven: true })).toEqual(still);
+  expect(drawn(nail)).toEqual(['solid']);
+});
+
+it('draws a spring as a zig-zag between its particles', () => {
+  const spring = drawn({ kind: 'spring' });
+  expect(spring[0]).toBe('M400,300');
+  expect(spring).toContain('L700,300');
+  // six turns: thirteen corners, five px to either side
+  expect(spring.filter((call) => /,(295|305)$/.test(call)).length).toBe(13);
 });
