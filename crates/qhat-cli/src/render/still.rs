@@ -42,13 +42,13 @@ impl Still {
             // A start that cannot be made to hold is all that there is to draw.
             Err(error) => return Ok(Still::start(scene, &error)),
         };
-        let mut still = Ending { status: Status::Done, message: None };
-        if at > 0.0 {
-            still = advance(&mut simulation, scene, at, quiet)?;
-        }
+        let ending = match at {
+            0.0 => Ending { status: Status::Done, message: None },
+            _ => advance(&mut simulation, scene, at, quiet)?,
+        };
         let reading = Reading::of(&mut simulation);
         let (system, state) = (simulation.system().clone(), simulation.state().clone());
-        Ok(Still { time: state.time(), system, state, reading, status: still.status, message: still.message })
+        Ok(Still { time: state.time(), system, state, reading, status: ending.status, message: ending.message })
     }
 
     fn start(scene: &Scene, error: &StepError) -> Self {
