@@ -4,8 +4,8 @@
 use super::case::{Case, Clock, P, PLACES, driven, mass, parse, twin};
 use qhat::{
     Anchor, Angle, Area, Constraint, Curve, Custom, Dimension, Direction, Distance, DistanceForm, Driven, Gears, Hyper,
-    Lengths, Limits, Line, Nail, NailForm, Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Purpose,
-    Relation, Surface, Volume, rigid_rods,
+    Lengths, Limits, Line, Nail, NailForm, Obstacle, OnCircle, OnCurve, OnEllipse, OnLine, OnPlane, OnSphere, Plane,
+    Purpose, Relation, Surface, Volume, rigid_rods,
 };
 
 /// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. It does not
@@ -32,7 +32,7 @@ kinds! {
     other Limits Obstacle;
 
     in [2];
-    equality Gears Area;
+    equality Gears Area OnEllipse;
     other;
 
     in [3];
@@ -285,6 +285,26 @@ pub(crate) const CASES: &[Case] = &[
         &["dot([1, 2, 2], p1 - p0)", "dist(p0, p1) - S"],
     )
     .other_rows(),
+    twin(
+        "ellipse",
+        2,
+        &[(1, [0.6, 0.8, 0.0])],
+        |t| {
+            let center = Anchor::Point([t.of("sin(t)/2"), 0.0.into(), 0.0.into()]);
+            let half = [t.of("1 + 0.1*sin(2*t)^2"), t.of("0.7 + 0.2*sin(t)^2")];
+            vec![OnEllipse { particle: P[1], center, along: [3.0, 4.0, 0.0], half }.into()]
+        },
+        &["sqrt((1 + 0.1*sin(2*t)^2)*(0.7 + 0.2*sin(t)^2))\
+           *(length([(0.6*(p1.x - sin(t)/2) + 0.8*p1.y)/(1 + 0.1*sin(2*t)^2), \
+           (0.6*p1.y - 0.8*(p1.x - sin(t)/2))/(0.7 + 0.2*sin(t)^2)]) - 1)"],
+    ),
+    twin(
+        "ellipse about a particle",
+        2,
+        &[(1, [0.8, 0.0, 0.0])],
+        |_| vec![OnEllipse::new(P[1], P[0], [1.0, 0.0, 0.0], [0.8, 0.5]).into()],
+        &["sqrt(0.8*0.5)*(length([(p1.x - p0.x)/0.8, (p1.y - p0.y)/0.5]) - 1)"],
+    ),
     twin("circle as a curve", 2, &[], |_| vec![on_curve(&["cos(s)", "sin(s)"])], &["dot(p1, p1) - 1"]).other_rows(),
     twin("parabola", 2, &[(1, [0.4, 0.08, 0.0])], |_| vec![on_curve(&["s", "s^2/2"])], &["p1.y - p1.x^2/2"])
         .other_rows(),
