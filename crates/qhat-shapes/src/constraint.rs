@@ -4,8 +4,8 @@ use crate::gears;
 use crate::list::Shapes;
 use crate::shape::{Shape, ShapeKind, value};
 use qhat::{
-    Anchor, Constraint, Driven, Lengths, Limits, Line, Obstacle, OnCircle, OnLine, OnPlane, OnSphere, Plane, Relation,
-    Surface,
+    Anchor, Constraint, Driven, Lengths, Limits, Line, Obstacle, OnCircle, OnEllipse, OnLine, OnPlane, OnSphere, Plane,
+    Relation, Surface,
 };
 
 /// Pieces of a drawn wire: on a whole screen each is some ten pixels long.
@@ -56,6 +56,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
             let ring = new(ShapeKind::Ring).at([*axis]).around(center, shapes.t);
             shapes.push(ring.sized(radius.value(shapes.t)).following([radius]));
         }
+        Constraint::OnEllipse(ellipse) => add_ellipse(ellipse, shapes),
         Constraint::OnCurve(on) => {
             let wire = new(ShapeKind::Wire).at(on.curve.drawn(PIECES));
             shapes.push_shared(wire);
@@ -137,6 +138,24 @@ fn add_plane(on: &OnPlane, shapes: &mut Shapes<'_>) {
         Plane::Particles(corners) => Shape::new(ShapeKind::Area, of, *corners),
     };
     shapes.push(shape);
+}
+
+/// An ellipse about a point is a wire. About a particle it is drawn as a tie: a wire has no particles to follow.
+fn add_ellipse(ellipse: &OnEllipse, shapes: &mut Shapes<'_>) {
+    let OnEllipse { particle, center, along: [ux, uy, _], half } = ellipse;
+    let Anchor::Point(center) = center else {
+        shapes.push(Shape::new(ShapeKind::Tie, shapes.of, [*particle]).around(center, shapes.t));
+        return;
+    };
+    let [x, y, _] = value(center, shapes.t);
+    let [a, b] = half.each_ref().map(|half| half.value(shapes.t));
+    let size = (ux * ux + uy * uy).sqrt();
+    let points = (0..=PIECES).map(|i| {
+        let (sine, cosine) = (std::f64::consts::TAU * i as f64 / PIECES as f64).sin_cos();
+        [x + (a * cosine * ux - b * sine * uy) / size, y + (a * cosine * uy + b * sine * ux) / size, 0.0]
+    });
+    let wire = Shape::new(ShapeKind::Wire, shapes.of, []).at(points.collect::<Vec<_>>());
+    shapes.push(wire.following(center).following(half));
 }
 
 /// A sphere at rest is a circle or bowl to run along; a sphere that moves is a rod of changing length.

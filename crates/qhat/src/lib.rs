@@ -69,11 +69,8 @@ mod threads;
 
 pub use body::Body;
 pub use cluster::rigid_rods;
-pub use constraint::{
-    Anchor, Angle, Area, Constraint, Curve, Custom, CustomConstraint, Direction, Distance, DistanceForm, DrivenPoint,
-    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint,
-    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
-};
+#[doc(inline)]
+pub use constraint::*;
 pub use driven::Driven;
 pub use energy::Energy;
 pub use ensemble::step_all;

@@ -24,6 +24,7 @@ mod named;
 mod obstacle;
 mod on_circle;
 mod on_curve;
+mod on_ellipse;
 mod on_line;
 mod on_plane;
 mod on_sphere;
@@ -58,6 +59,7 @@ pub use named::NamedConstraint;
 pub use obstacle::{Obstacle, Surface};
 pub use on_circle::OnCircle;
 pub use on_curve::OnCurve;
+pub use on_ellipse::OnEllipse;
 pub use on_line::{Line, OnLine};
 pub use on_plane::{OnPlane, Plane};
 pub use on_sphere::OnSphere;
@@ -194,6 +196,8 @@ constraints! {
     OnSphere,
     /// A particle on a circle in space.
     OnCircle,
+    /// A particle on an ellipse in the plane.
+    OnEllipse,
     /// A particle on a smooth curve: a bead on a wire.
     OnCurve,
 }

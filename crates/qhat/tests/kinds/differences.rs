@@ -1,8 +1,8 @@
 //! The rows of every kind against differences: Ċ, J and C_t against those of C, γ against those of Ċ along the motion.
 
+use super::can_be_driven;
 use super::case::{LATER, slopes_in_time};
-use super::cases::CASES;
-use super::{can_be_driven, kind};
+use super::cases::{CASES, kind};
 use crate::systems::dense::{assert_all_close, largest, multiply};
 use crate::systems::random::{Random, dimension};
 use qhat::evaluate;

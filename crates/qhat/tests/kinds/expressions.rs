@@ -1,8 +1,7 @@
 //! Every kind against its twin, the same typed as expressions: the same rows, and the same motion.
 
 use super::case::{Case, LATER, P, slopes_in_time, twin};
-use super::cases::CASES;
-use super::{KINDS, kind};
+use super::cases::{CASES, KINDS, kind};
 use crate::systems::dense::{assert_all_close, assert_close};
 use crate::systems::random::Random;
 use qhat::{
