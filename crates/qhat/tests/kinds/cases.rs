@@ -636,18 +636,18 @@ pub(crate) const CASES: &[Case] = &[
         |_| vec![Limits::between(P[0], P[1], 0.5, 1.2).into()],
         &["1.2 - dist(p0, p1)", "dist(p0, p1) - 0.5"],
     )
-    .without_motion()
+    .one_sided()
     .anywhere(),
     twin("rope in space", 3, &[], |_| vec![Limits::rope(P[1], P[0], 1.2).into()], &["1.2 - dist(p0, p1)"])
-        .without_motion()
+        .one_sided()
         .anywhere(),
-    twin("slope", 2, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).without_motion().anywhere(),
-    twin("slope in space", 3, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).without_motion().anywhere(),
-    twin("outside of a circle", 2, &[], |_| vec![ball(false)], &["dist(p1, [0.3, -0.4]) - 0.5"]).without_motion(),
-    twin("inside of a ball", 3, &[], |_| vec![ball(true)], &["0.5 - dist(p1, [0.3, -0.4, 0.1])"]).without_motion(),
+    twin("slope", 2, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).one_sided().anywhere(),
+    twin("slope in space", 3, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).one_sided().anywhere(),
+    twin("outside of a circle", 2, &[], |_| vec![ball(false)], &["dist(p1, [0.3, -0.4]) - 0.5"]).one_sided(),
+    twin("inside of a ball", 3, &[], |_| vec![ball(true)], &["0.5 - dist(p1, [0.3, -0.4, 0.1])"]).one_sided(),
     // Off its corner, whose radius is a thousandth of 0.5 m.
     twin("corner of a box", 2, &[], |_| vec![corner_of_a_box()], &["length(p1 - [0.2995, -0.4005]) - 0.0005"])
-        .without_motion(),
+        .one_sided(),
     twin(
         "corner of a box in space",
         3,
@@ -655,7 +655,7 @@ pub(crate) const CASES: &[Case] = &[
         |_| vec![corner_of_a_box()],
         &["length(p1 - [0.2995, -0.4005, -0.2005]) - 0.0005"],
     )
-    .without_motion(),
+    .one_sided(),
 ];
 
 /// Back and forth between p0 and p1, once with half the weight.
