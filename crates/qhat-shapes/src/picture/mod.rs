@@ -106,7 +106,7 @@ impl Reading {
 pub fn svg(picture: &Picture<'_>, options: &Options) -> String {
     let shapes = crate::list::shapes_at(picture.system, picture.state, picture.time);
     let view = View::new(picture, options, &shapes);
-    let mut pen = Pen::new();
+    let mut pen = Pen::new(view.palette.background);
     pen.open_document(picture.name, options.size, view.camera.size);
     frame::draw_background(&view, &mut pen);
     styles::draw(&view, &mut pen);

@@ -22,12 +22,18 @@ pub(super) struct Stroke<'a> {
 /// An attribute and its value.
 pub(super) type Attribute<'a> = (&'a str, &'a str);
 
+/// How far the background reaches around letters \[px\]: a line behind a word would strike it through.
+const HALO: &str = "6";
+
 /// A document being written.
-pub(super) struct Pen(Writer<Vec<u8>>);
+pub(super) struct Pen {
+    writer: Writer<Vec<u8>>,
+    background: &'static str,
+}
 
 impl Pen {
-    pub(super) fn new() -> Self {
-        Pen(Writer::new(Vec::new()))
+    pub(super) fn new(background: &'static str) -> Self {
+        Pen { writer: Writer::new(Vec::new()), background }
     }
 
     /// Begins a document of a size \[px\] that is laid out in units of its own.
@@ -50,7 +56,7 @@ impl Pen {
     pub(super) fn finish(mut self) -> String {
         self.close("svg");
         // Every byte came from text.
-        String::from_utf8(self.0.into_inner()).unwrap_or_default()
+        String::from_utf8(self.writer.into_inner()).unwrap_or_default()
     }
 
     pub(super) fn open(&mut self, name: &str, attributes: &[Attribute<'_>]) {
@@ -96,7 +102,11 @@ impl Pen {
     /// Text whose baseline begins, has its middle or ends (`anchor`) at a spot \[px\].
     pub(super) fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, colour: &str, anchor: &str) {
         let [x, y, size] = [x, y, size].map(number);
-        self.open("text", &[("x", &x), ("y", &y), ("font-size", &size), ("fill", colour), ("text-anchor", anchor)]);
+        let place = [("x", x.as_str()), ("y", &y), ("font-size", &size), ("fill", colour), ("text-anchor", anchor)];
+        let halo = [("stroke", self.background), ("stroke-width", HALO), ("stroke-linejoin", "round")];
+        let mut attributes = [&place[..], &halo].concat();
+        attributes.push(("paint-order", "stroke"));
+        self.open("text", &attributes);
         self.write(Event::Text(BytesText::new(&fitted(text))));
         self.close("text");
     }
@@ -109,7 +119,7 @@ impl Pen {
 
     fn write(&mut self, event: Event<'_>) {
         // Writing into memory cannot fail.
-        let _ = self.0.write_event(event);
+        let _ = self.writer.write_event(event);
     }
 }
 
