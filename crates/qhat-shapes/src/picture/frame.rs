@@ -1,23 +1,23 @@
-//! What stands around a scene: the grid behind it, its name and time, the scale of colours, the scale bar, the axes.
+//! The frame of a still: the grid behind the scene, its name and time, the scale of colours, the scale bar, the axes.
 
 use super::number::{format, nice_ceiling};
 use super::path::{Path, Spot, number};
 use super::pen::{Pen, Stroke};
 use super::view::View;
 
-/// Grid lines come about this far apart \[px\].
+/// Approximate distance of grid lines \[px\].
 const GRID: f64 = 90.0;
-/// From the edge of the picture to text and legend \[px\].
+/// Distance from the edge of the picture to text and legend \[px\].
 const EDGE: f64 = 28.0;
-/// The scale of colours \[px\].
+/// Width and height of the scale of colours \[px\].
 const RAMP: [f64; 2] = [200.0, 10.0];
 /// Sizes of the title, of the time and of the legend's text \[px\].
 const TITLE: f64 = 24.0;
 const TIME: f64 = 15.0;
 const SMALL: f64 = 12.0;
-/// A time is told to so many digits: frames of a millisecond differ within a quarter of an hour.
+/// Digits of the time. With six, frames of a millisecond have different times for a quarter of an hour.
 const TIME_DIGITS: usize = 6;
-/// The mean width of a letter, in sizes of its text.
+/// The mean width of a letter, relative to the size of the text.
 const LETTER: f64 = 0.56;
 
 /// The background and, in the plane, a grid of round lengths.
@@ -30,7 +30,7 @@ pub(super) fn draw_background(view: &View<'_>, pen: &mut Pen) {
     }
     let step = nice_ceiling(GRID / camera.scale) * camera.scale;
     let mut path = Path::default();
-    // The origin of the scene is on a line of each kind.
+    // The origin of the scene lies on one vertical and one horizontal line.
     let origin = camera.spot([0.0; 3]);
     for (k, end) in [(0, camera.size[1]), (1, camera.size[0])] {
         let mut at = origin[k].rem_euclid(step);
@@ -63,7 +63,7 @@ pub(super) fn draw_labels(view: &View<'_>, pen: &mut Pen) {
     draw_scale(view, pen, [width - EDGE, height - EDGE]);
 }
 
-/// Background behind text: a line behind a word would strike it through.
+/// Draws a piece of background behind text, so that no line of the scene strikes the text through.
 fn plate(view: &View<'_>, pen: &mut Pen, [x, baseline]: Spot, [width, size]: [f64; 2]) {
     let [x, y, width, height] = [x - 6.0, baseline - size, width + 12.0, 1.35 * size].map(number);
     pen.element(
@@ -89,7 +89,7 @@ fn draw_legend(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
     let colours: Vec<String> = view.palette.scale().collect();
     let part = width / colours.len() as f64;
     for (i, colour) in colours.iter().enumerate() {
-        // Half a pixel more than its part: readers of SVG leave a seam between neighbours.
+        // Half a pixel wider than its part, because readers of SVG leave a seam between neighbours.
         let wide = if i + 1 < colours.len() { part + 0.5 } else { part };
         let [x, y, wide, high] = [x + i as f64 * part, top, wide, thickness].map(number);
         pen.element("rect", &[("x", &x), ("y", &y), ("width", &wide), ("height", &high), ("fill", colour)]);
@@ -128,7 +128,7 @@ fn draw_axes(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
         let mut path = Path::default();
         path.segment([x, y], [x + dx, y + dy]);
         pen.path("axis", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
-        // The baseline is a third of the text's size below its middle.
+        // The baseline lies a third of the text's size below the middle of the text.
         pen.text(name, [x + 1.4 * dx, y + 1.4 * dy + SMALL / 3.0], SMALL, view.palette.muted, "middle");
     }
 }

@@ -71,7 +71,7 @@ impl Curve {
             return Err(format!("a curve has 2 or 3 components, not {}", components.len()));
         }
         if components.iter().any(|component| !component.particles().is_empty()) {
-            return Err("a curve may depend on nothing but s".into());
+            return Err("a curve may depend on s only".into());
         }
         if !(from < to && (to - from).is_finite()) {
             return Err(format!(

@@ -157,7 +157,9 @@ impl Smooth for Gears {
             }
             match *part {
                 Part::Turn(z) if z.unsigned_abs() > MOST_TEETH => {
-                    return Err(format!("less their common factor, the numbers of teeth may be {MOST_TEETH} at most"));
+                    return Err(format!(
+                        "divided by their common factor, the numbers of teeth may be at most {MOST_TEETH}"
+                    ));
                 }
                 Part::Turn(0) => return Err("a wheel without teeth takes no part; leave it out".into()),
                 Part::Turn(_) => {}

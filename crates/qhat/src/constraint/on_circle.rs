@@ -71,7 +71,7 @@ impl Smooth for OnCircle {
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
         if dimension == 2 {
-            return Err("a circle with an axis needs three dimensions; in two, a sphere is the circle".into());
+            return Err("a circle with an axis needs three dimensions; in two dimensions, use a sphere".into());
         }
         check_direction(&still(self.axis), "the axis of a circle", dimension)
     }

@@ -90,7 +90,7 @@ impl Smooth for OnPlane {
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
         if dimension == 2 {
-            return Err("a plane needs three dimensions; in two, hold the particle on a line".into());
+            return Err("a plane needs three dimensions; in two dimensions, hold the particle on a line".into());
         }
         match &self.plane {
             Plane::Across(_, normal) => check_direction(normal, "the normal of a plane", dimension),

@@ -93,7 +93,7 @@ impl Gas {
             return Err(format!("a gas must fill more than nothing at the start, but fills {}", self.content));
         }
         if self.particles.len() > MOST {
-            return Err(format!("a gas is held by at most {MOST} particles, not {}", self.particles.len()));
+            return Err(format!("a gas may have at most {MOST} particles, but has {}", self.particles.len()));
         }
         self.facets.iter().try_for_each(Facet::check)
     }

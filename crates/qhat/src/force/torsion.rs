@@ -12,7 +12,8 @@
 //! may therefore pass through the straight position; V has a kink only at Δ = π. With ⊥(x, y) = (−y, x):
 //!
 //! ```text
-//! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|², ∂²θ/∂u² its negative with u in place of w, ∂²θ/∂u∂w = 0
+//! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂u∂w = 0
+//! ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|²,   ∂²θ/∂u² = [û û⊥ᵀ + û⊥ ûᵀ]/|u|²
 //! ```
 //!
 //! In space θ is unsigned, in [0, π]. n_u and n_w are the unit vectors at right angles to each arm, towards the other
