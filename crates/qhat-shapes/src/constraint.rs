@@ -8,11 +8,11 @@ use qhat::{
     Relation, Surface,
 };
 
-/// Pieces of a drawn wire: on a whole screen each is some ten pixels long.
+/// Number of pieces of a drawn wire: on a full screen each piece is about ten pixels long.
 const PIECES: usize = 192;
 
-/// Weights of a relation that add up to less than this tie particles to each other and not to a point; thirds add up to
-/// 1 with a rounding of 1e-16.
+/// Least sum of weights with which a relation counts as tied to a point. A relation whose weights add up to less ties
+/// particles to each other. Sums that are 0 or 1 in exact arithmetic (of thirds) have a rounding error of 1e-16.
 const NO_WEIGHT: f64 = 1e-9;
 
 /// Adds the shapes of one constraint.
@@ -27,7 +27,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
         Constraint::Nail(nail) => {
             shapes.push(Shape::new(ShapeKind::Nail, shapes.of, [nail.particle]).at([nail.at]));
         }
-        // An equation has no picture.
+        // A residual of a user has no shape.
         Constraint::ExpressionConstraint(_) | Constraint::Custom(_) => (),
         Constraint::Obstacle(barrier) => add_obstacle(barrier, shapes),
         Constraint::Relation(relation) => add_relation(relation, shapes),
@@ -64,7 +64,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
     }
 }
 
-/// With both limits it is drawn as a strut: stiff, though loose. A rope beside the strut would be a second thing.
+/// A constraint with both limits is drawn as one strut; a rope beside the strut would look like a second constraint.
 fn add_limits(limits: &Limits, shapes: &mut Shapes<'_>) {
     let (kind, size) = match (limits.shortest, limits.longest) {
         (Some(shortest), _) => (ShapeKind::Strut, shortest),
@@ -89,8 +89,8 @@ fn add_obstacle(obstacle: &Obstacle, shapes: &mut Shapes<'_>) {
     shapes.push_shared(shape);
 }
 
-/// A relation of one particle is drawn as a nail. A relation that tells several particles to be somewhere together is
-/// drawn from the first to the others.
+/// A relation of one particle is drawn as a nail. A relation of several particles whose weights add up
+/// to zero is drawn as ties from the first particle to the others.
 fn add_relation(relation: &Relation, shapes: &mut Shapes<'_>) {
     if let [(particle, weight)] = relation.terms[..] {
         let place = value(&relation.point, shapes.t).map(|p| p / weight);
@@ -103,7 +103,7 @@ fn add_relation(relation: &Relation, shapes: &mut Shapes<'_>) {
     }
 }
 
-/// A sum of lengths is a rope over pulleys; a relation between lengths ties their ends.
+/// A sum of lengths is drawn as a rope over pulleys, a relation between lengths as ties between their ends.
 fn add_lengths(lengths: &Lengths, shapes: &mut Shapes<'_>) {
     let is_cord = lengths.segments().all(|(_, weight)| weight > 0.0);
     let kind = if is_cord { ShapeKind::Cord } else { ShapeKind::Tie };
@@ -123,7 +123,7 @@ fn add_line(on: &OnLine, shapes: &mut Shapes<'_>) {
     });
 }
 
-/// In two dimensions a plane is the line across its normal.
+/// In two dimensions a plane is drawn as the line at right angles to its normal.
 fn add_plane(on: &OnPlane, shapes: &mut Shapes<'_>) {
     let (t, of) = (shapes.t, shapes.of);
     let shape = match &on.plane {
@@ -158,7 +158,7 @@ fn add_ellipse(ellipse: &OnEllipse, shapes: &mut Shapes<'_>) {
     shapes.push(wire.following(center).following(half));
 }
 
-/// A sphere at rest is a circle or bowl to run along; a sphere that moves is a rod of changing length.
+/// A sphere at rest is drawn as a circle or bowl, and a sphere that moves as a rod whose length changes.
 fn add_sphere(sphere: &OnSphere, shapes: &mut Shapes<'_>) {
     let OnSphere { particle, center, radius } = sphere;
     let at_rest = matches!(radius, Driven::Constant(_)) && matches!(center, Anchor::Point(_));

@@ -1,4 +1,4 @@
-//! The list of shapes: kinds, particles, points and sizes of every family, and what changes with time.
+//! The list of shapes: kinds, particles, points and sizes of every family, and the changes with time.
 
 use super::*;
 use ShapeKind::{DrivenRod, Ground, Line, Rod, Rope, Strut, Tie, Wheel, Wire};
@@ -29,7 +29,7 @@ fn system(constraints: impl IntoIterator<Item = Constraint>) -> (System, qhat::S
     builder.build().unwrap()
 }
 
-/// The shapes of constraints on the corners of that square.
+/// The shapes of constraints on the corners of a square of 3 m.
 fn drawn(constraints: impl IntoIterator<Item = Constraint>) -> Vec<Shape> {
     let (system, state) = system(constraints);
     shapes(&system, &state)

@@ -1,13 +1,13 @@
-//! What stands around a scene: the grid behind it, its name and time, the scale of colours, the scale bar, the axes.
+//! The frame of a still: the grid behind the scene, its name and time, the scale of colours, the scale bar, the axes.
 
 use super::number::{format, nice_ceiling};
 use super::path::{Path, Spot, number};
 use super::pen::{Pen, Stroke};
 use super::view::View;
 
-/// Grid lines come about this far apart \[px\].
+/// Approximate distance of grid lines \[px\].
 const GRID: f64 = 90.0;
-/// From the edge of the picture to text and legend \[px\].
+/// Distance from the edge of the picture to text and legend \[px\].
 const EDGE: f64 = 28.0;
 /// Width and height of the scale of colours \[px\]: whole pixels for each of its steps.
 const RAMP: [f64; 2] = [205.0, 10.0];
@@ -15,9 +15,9 @@ const RAMP: [f64; 2] = [205.0, 10.0];
 const TITLE: f64 = 24.0;
 const TIME: f64 = 15.0;
 const SMALL: f64 = 12.0;
-/// A time is told to so many digits: frames of a millisecond differ within a quarter of an hour.
+/// Digits of the time. With six, frames of a millisecond have different times for a quarter of an hour.
 const TIME_DIGITS: usize = 6;
-/// The mean width of a letter, in sizes of its text.
+/// The mean width of a letter, relative to the size of the text.
 const LETTER: f64 = 0.56;
 
 /// The background and, in the plane, a grid of round lengths.
@@ -30,7 +30,7 @@ pub(super) fn draw_background(view: &View<'_>, pen: &mut Pen) {
     }
     let step = nice_ceiling(GRID / camera.scale) * camera.scale;
     let mut path = Path::default();
-    // The origin of the scene is on a line of each kind.
+    // The origin of the scene lies on one vertical and one horizontal line.
     let origin = camera.spot([0.0; 3]);
     for (k, end) in [(0, camera.size[1]), (1, camera.size[0])] {
         let mut at = origin[k].rem_euclid(step);
@@ -106,7 +106,7 @@ fn draw_axes(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
         let mut path = Path::default();
         path.segment([x, y], [x + dx, y + dy]);
         pen.path("axis", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
-        // The baseline is a third of the text's size below its middle.
+        // The baseline lies a third of the text's size below the middle of the text.
         pen.text(name, [x + 1.4 * dx, y + 1.4 * dy + SMALL / 3.0], SMALL, view.palette.muted, "middle");
     }
 }

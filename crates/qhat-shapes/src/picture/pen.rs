@@ -1,21 +1,21 @@
-//! What a still is written with: elements of SVG, with every name and text escaped.
+//! The writer of a still: elements of SVG, with every name and text escaped.
 
 use super::path::{Path, number};
 use quick_xml::Writer;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 
-/// The font of all text; PNGs embed it, readers of SVG may have it.
+/// The fonts of all text, in order of preference. PNGs use an embedded Inter; a reader of SVG may have it or not.
 const FONTS: &str = "Inter, system-ui, sans-serif";
 
-/// How a path is painted; a width of 0 strokes nothing.
+/// The colours and widths with which a path is painted; a width of 0 draws no border.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke<'a> {
     pub(super) colour: &'a str,
-    /// \[px\].
+    /// The width of the border \[px\].
     pub(super) width: f64,
     /// Lengths of dash and gap \[px\].
     pub(super) dash: Option<[f64; 2]>,
-    /// How much of the colour the inside gets.
+    /// The opacity of the inside, from 0 to 1.
     pub(super) fill: f64,
 }
 
@@ -78,7 +78,7 @@ impl Pen {
         self.close(name);
     }
 
-    /// A path of a class, unless there is nothing to draw.
+    /// A path of a class; an empty path is left out.
     pub(super) fn path(&mut self, class: &str, path: &Path, stroke: Stroke<'_>) {
         if path.is_empty() {
             return;
@@ -131,7 +131,8 @@ fn start<'a>(name: &'a str, attributes: &[Attribute<'_>]) -> BytesStart<'a> {
     start
 }
 
-/// Text without the characters that XML forbids and those that turn the direction of writing: names come from scenes.
+/// Text without the characters that XML forbids and without the characters that change the direction of writing: names
+/// come from scenes of users.
 fn fitted(text: &str) -> String {
     let fit = |character: char| match character {
         '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => '\u{FFFD}',

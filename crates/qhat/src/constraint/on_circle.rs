@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Two rows [m], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards [N].
-//! Three dimensions only: in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
+//! Three dimensions only; in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
 //! where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
@@ -25,14 +25,14 @@ pub struct OnCircle {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// What the circle is at right angles to, of any length.
+    /// The axis, at right angles to the circle, of any length.
     pub axis: [f64; 3],
     /// r [m], positive.
     pub radius: Driven,
 }
 
 impl OnCircle {
-    /// On a circle of a radius [m] about a centre, across an axis.
+    /// A particle on a circle of a radius [m] about a centre, at right angles to an axis.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }
@@ -71,7 +71,7 @@ impl Smooth for OnCircle {
 
     fn fits(&self, dimension: usize) -> Result<(), String> {
         if dimension == 2 {
-            return Err("a circle with an axis needs three dimensions; in two, a sphere is the circle".into());
+            return Err("a circle with an axis needs three dimensions; in two dimensions, use a sphere".into());
         }
         check_direction(&still(self.axis), "the axis of a circle", dimension)
     }
