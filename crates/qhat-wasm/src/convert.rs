@@ -5,8 +5,7 @@ use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Marks, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
-    Constraint, DistanceForm, EventKind, Feedback, Force, Formulation, NailForm, ParticleId, Settings, Simulation,
-    System, Warning,
+    Constraint, DistanceForm, EventKind, Feedback, Force, Formulation, NailForm, Settings, Simulation, System, Warning,
 };
 use wasm_bindgen::{JsCast, JsValue};
 
@@ -18,8 +17,8 @@ pub(crate) fn structure(system: &System, name: &str, description: &str, duration
     let links = system.links().map(|link| {
         Record::new()
             .with("name", link.name)
-            .with("a", link.a.0 as u32)
-            .with("b", link.b.0 as u32)
+            .with("a", link.a.index() as u32)
+            .with("b", link.b.index() as u32)
             .with("shortest", length(link.shortest))
             .with("longest", length(link.longest))
             .with("rows", list(link.rows.map(|row| row as u32)))
@@ -28,15 +27,18 @@ pub(crate) fn structure(system: &System, name: &str, description: &str, duration
         Constraint::Nail(nail) => Some(
             Record::new()
                 .with("name", named.name.as_str())
-                .with("particle", nail.particle.0 as u32)
+                .with("particle", nail.particle.index() as u32)
                 .with("at", list(nail.at)),
         ),
         _ => None,
     });
     let springs = system.forces().iter().filter_map(|force| match force {
-        Force::Spring(spring) => {
-            Some(Record::new().with("a", spring.a.0 as u32).with("b", spring.b.0 as u32).with("rest", spring.rest))
-        }
+        Force::Spring(spring) => Some(
+            Record::new()
+                .with("a", spring.a.index() as u32)
+                .with("b", spring.b.index() as u32)
+                .with("rest", spring.rest),
+        ),
         _ => None,
     });
     Record::new()
@@ -47,7 +49,7 @@ pub(crate) fn structure(system: &System, name: &str, description: &str, duration
         .with("particle_names", strings(system.particle_names()))
         .with("row_names", strings(system.row_names()))
         .with("masses", numbers(system.masses()))
-        .with("fixed", list((0..system.particle_count()).map(|i| system.is_fixed(ParticleId(i)))))
+        .with("fixed", list(system.particles().map(|particle| system.is_fixed(particle))))
         .with("links", list(links))
         .with("nails", list(nails))
         .with("springs", list(springs))
@@ -58,7 +60,7 @@ pub(crate) fn marks(marks: &[Mark]) -> Marks {
     let records = marks.iter().map(|mark| {
         Record::new()
             .with("kind", mark.kind)
-            .with("particles", list(mark.particles.iter().map(|particle| particle.0 as u32)))
+            .with("particles", list(mark.particles.iter().map(|particle| particle.index() as u32)))
             .with("points", numbers(mark.points.as_flattened()))
             .with("size", mark.size)
             .with("driven", mark.driven)

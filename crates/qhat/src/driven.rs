@@ -1,5 +1,6 @@
 //! A number that may change with time: the length of a driven rod, the angle of a crank.
 
+use crate::allowed::{ValueError, finite};
 use crate::expression::Expression;
 use crate::number::Number;
 
@@ -29,14 +30,14 @@ impl Driven {
         self.at(t).0
     }
 
-    /// `Ok` if it is a finite number at the start, or a function of time alone; otherwise a sentence that names it.
-    pub(crate) fn check(&self, what: &str) -> Result<(), String> {
+    /// `Ok` if it is a finite number at the start, and a function of time alone.
+    pub(crate) fn check(&self, what: &'static str) -> Result<(), ValueError> {
         if let Driven::Function(function) = self
             && (!function.particles().is_empty() || function.uses_velocities())
         {
-            return Err(format!("{what} may depend on nothing but t, but `{}` names particles", function.text()));
+            return Err(ValueError::NamesParticles { what, expression: function.text().to_owned() });
         }
-        crate::allowed::finite(what, self.value(0.0))
+        finite(what, self.value(0.0))
     }
 }
 

@@ -66,29 +66,31 @@ mod system;
 mod terms;
 mod threads;
 
-pub use body::Body;
+pub use allowed::{GeometryError, ValueError};
+pub use body::{Body, BodyError};
 pub use cluster::rigid_rods;
 pub use constraint::{
-    Anchor, Angle, Area, Constraint, Curve, Direction, Distance, DistanceForm, DrivenPoint, ExpressionConstraint,
-    Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint, Obstacle, OnCircle,
-    OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
+    Anchor, Angle, Area, Constraint, ConstraintError, Curve, Direction, Distance, DistanceForm, DrivenPoint,
+    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint,
+    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
 };
 pub use driven::Driven;
 pub use energy::Energy;
 pub use ensemble::step_all;
-pub use error::{BodyError, BuildError, SettingsError, StepError};
-pub use expression::{Expression, ExpressionError, Purpose, Scope};
+pub use error::StepError;
+pub use expression::{Expression, ExpressionError, ParameterError, Purpose, Scope};
 pub use force::{
-    Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, Gas,
-    Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
+    Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, ForceError,
+    Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
 };
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
+pub use point::Vector;
 pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
-pub use settings::{Feedback, Integrator, Settings};
+pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;
-pub use space::{Dimension, ParticleId};
+pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
-pub use system::{Particle, System, SystemBuilder};
+pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

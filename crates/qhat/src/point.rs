@@ -2,6 +2,33 @@
 
 use crate::space::ParticleId;
 
+/// A point or vector of two or three components, as functions take it: from `[x, y]`, where z is 0, or `[x, y, z]`.
+///
+/// ```
+/// use qhat::Vector;
+/// assert_eq!(Vector::from([1.0, 2.0]), Vector::from([1.0, 2.0, 0.0]));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector(pub(crate) [f64; 3]);
+
+impl From<[f64; 2]> for Vector {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Vector([x, y, 0.0])
+    }
+}
+
+impl From<[f64; 3]> for Vector {
+    fn from(components: [f64; 3]) -> Self {
+        Vector(components)
+    }
+}
+
+impl From<Vector> for [f64; 3] {
+    fn from(vector: Vector) -> Self {
+        vector.0
+    }
+}
+
 /// A point or vector in D dimensions.
 pub(crate) type Point<const D: usize> = [f64; D];
 

@@ -48,9 +48,10 @@ fn heap(random: &mut Random) -> SystemBuilder {
         let (a, b, length) = (ids[other], ids[i], between(&places[other], &places[i]));
         let name = format!("link{i}");
         match random.below(4) {
-            0 => builder.constraint(name, Distance::new(a, b, length)),
-            1 => builder.constraint(name, Limits { restitution, ..Limits::rope(a, b, 1.05 * length) }),
-            2 => builder.constraint(name, Limits { restitution, ..Limits::between(a, b, 0.8 * length, 1.1 * length) }),
+            0 => builder.with_constraint(name, Distance::new(a, b, length)),
+            1 => builder.with_constraint(name, Limits { restitution, ..Limits::rope(a, b, 1.05 * length) }),
+            2 => builder
+                .with_constraint(name, Limits { restitution, ..Limits::between(a, b, 0.8 * length, 1.1 * length) }),
             _ => &mut builder,
         };
     }

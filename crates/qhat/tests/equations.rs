@@ -5,9 +5,7 @@
 
 mod systems;
 
-use qhat::{
-    Constraint, Distance, DistanceForm, Formulation, Nail, NailForm, Particle, ParticleId, State, System, evaluate,
-};
+use qhat::{Constraint, Distance, DistanceForm, Formulation, Nail, NailForm, Particle, State, System, evaluate};
 use systems::dense::{assert_all_close, assert_close, dot, multiply, norm};
 use systems::random::{Random, dimension};
 
@@ -89,11 +87,11 @@ fn away(x: &[&[f64]]) -> Vec<f64> {
 
 fn rod(form: DistanceForm) -> Constraint {
     // The end with the higher number first: the blocks of a row need not be in order.
-    Distance { form, ..Distance::new(ParticleId(2), ParticleId(0), R) }.into()
+    Distance { form, ..Distance::new(systems::id(2), systems::id(0), R) }.into()
 }
 
 fn nail(form: NailForm) -> Constraint {
-    Nail { particle: ParticleId(1), at: P, form }.into()
+    Nail { particle: systems::id(1), at: P, form }.into()
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn star(arms: usize) -> (System, State) {
             builder.constraint(format!("end{i}"), Distance::new(tip, end, norm(&d)));
         }
     }
-    builder.force(systems::gravity()).force(qhat::Drag { coefficient: 0.3 });
+    builder.with_force(systems::gravity()).force(qhat::Drag { coefficient: 0.3 });
     builder.build().unwrap()
 }
 
@@ -214,7 +214,7 @@ impl Numbering {
 /// The same system, numbered anew.
 fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, State) {
     let d = system.dimension();
-    let new = |old: ParticleId| ParticleId(numbering.particles.iter().position(|&i| i == old.0).unwrap());
+    let new = |old: ParticleId| systems::id(numbering.particles.iter().position(|&i| i == old.index()).unwrap());
     let mut builder = System::builder(systems::random::dimension(d));
     for &i in &numbering.particles {
         let (x, v) = (&state.positions()[i * d..][..d], &state.velocities()[i * d..][..d]);
@@ -310,7 +310,7 @@ fn sparse_equals_dense() {
             let particle = Particle::at(format!("{i} of {copy}"), x).with_mass(system.masses()[i]);
             builder.particle(if system.inverse_masses()[i] == 0.0 { particle.fixed() } else { particle });
         }
-        let shift = |id: ParticleId| ParticleId(id.0 + copy * system.particle_count());
+        let shift = |id: ParticleId| systems::id(id.index() + copy * system.particle_count());
         for named in system.constraints() {
             let constraint: Constraint = match named.constraint.clone() {
                 Constraint::Distance(rod) => Distance { a: shift(rod.a), b: shift(rod.b), ..rod }.into(),

@@ -9,6 +9,7 @@ use qhat::{
     Angle, Area, Constraint, Dimension, Distance, Driven, Expression, Gears, Integrator, Lengths, Particle, ParticleId,
     Purpose, Scope, Settings, Simulation, State, System, Volume, evaluate,
 };
+use std::sync::LazyLock;
 use systems::dense::{assert_all_close, assert_close, multiply};
 use systems::random::{Random, dimension};
 
@@ -25,7 +26,7 @@ struct Case {
     turns: bool,
 }
 
-const P: [ParticleId; 6] = [ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(3), ParticleId(4), ParticleId(5)];
+static P: LazyLock<[ParticleId; 6]> = LazyLock::new(|| std::array::from_fn(systems::id));
 
 const CASES: &[Case] = &[
     Case {
@@ -144,7 +145,7 @@ fn tackle(total: Driven) -> Constraint {
 }
 
 fn particle(name: &str) -> Option<ParticleId> {
-    name.strip_prefix('p').and_then(|number| number.parse().ok()).map(ParticleId)
+    name.strip_prefix('p').and_then(|number| number.parse().ok()).map(systems::id)
 }
 
 fn schedule(text: &str, later: f64) -> Driven {
@@ -244,7 +245,7 @@ fn every_kind_agrees_with_differences_and_with_its_expression() {
             assert_close(&format!("{}: C_t typed", case.name), Ct, slope_in_time, roundoff);
             let mut dense = vec![0.0; q.len()];
             for (particle, block) in twin.particles().iter().zip(gradient.chunks(case.d)) {
-                dense[particle.0 * case.d..][..case.d].copy_from_slice(block);
+                dense[particle.index() * case.d..][..case.d].copy_from_slice(block);
             }
             assert_all_close(&format!("{}: J typed", case.name), &J, &dense, roundoff);
         }
@@ -263,7 +264,7 @@ fn moving(case: &Case) -> (System, State) {
     }
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {
-            let apart = |k: usize| q[a.0 * case.d + k] - q[b.0 * case.d + k];
+            let apart = |k: usize| q[a.index() * case.d + k] - q[b.index() * case.d + k];
             let square = |k: usize| apart(k) * apart(k);
             let rest = 0.95 * (0..case.d).map(square).sum::<f64>().sqrt();
             builder.force(qhat::Spring { a: *a, b: *b, stiffness: 20.0, damping: 0.0, rest });
@@ -355,7 +356,7 @@ fn singular_places_end_in_an_error_or_in_numbers() {
             let x = [if i < 2 { 0.0 } else { i as f64 }, 0.0, 0.0];
             builder.particle(Particle::at(format!("p{i}"), &x[..d]).with_velocity(vec![0.1; d]));
         }
-        builder.constraint("anchor", Distance::new(P[4], P[5], 1.0)).constraint("it", constraint);
+        builder.with_constraint("anchor", Distance::new(P[4], P[5], 1.0)).constraint("it", constraint);
         let (system, state) = builder.build().unwrap();
         let outcome = Simulation::new(system, state, Settings::default()).and_then(|mut simulation| {
             simulation.step()?;

@@ -4,9 +4,7 @@
 
 mod systems;
 
-use qhat::{
-    Dimension, Distance, DistanceForm, Nail, NailForm, Particle, ParticleId, PointForce, Settings, State, System,
-};
+use qhat::{Dimension, Distance, DistanceForm, Nail, NailForm, Particle, PointForce, Settings, State, System};
 use qhat::{Terms, Workspace, evaluate, project};
 use systems::dense::{assert_all_close, assert_close, dot};
 use systems::random::{Random, web};
@@ -75,7 +73,7 @@ fn hanging(form: DistanceForm) -> Terms {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.5, 1.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.5, -1.5]).with_mass(2.0));
-    builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
+    builder.with_constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     evaluate(&system, &state)
 }
@@ -107,7 +105,7 @@ fn a_strut_under_load_has_negative_tension() {
     let mut builder = System::builder(Dimension::Three);
     let foot = builder.particle(Particle::at("foot", [0.0, 0.0, 0.0]).fixed());
     let load = builder.particle(Particle::at("load", [0.0, 2.0, 0.0]).with_mass(2.0));
-    builder.constraint("strut", Distance::new(load, foot, 2.0)).force(systems::gravity());
+    builder.with_constraint("strut", Distance::new(load, foot, 2.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     assert_close("tension", evaluate(&system, &state).tension[0], -MG, 1e-14 * MG);
 }
@@ -116,7 +114,7 @@ fn a_strut_under_load_has_negative_tension() {
 fn lambda_of_a_nail_is_its_force_on_the_particle() {
     let mut builder = System::builder(Dimension::Three);
     let it = builder.particle(Particle::at("it", [1.0, 2.0, 3.0]).with_mass(2.0));
-    builder.constraint("nail", Nail::new(it, [1.0, 2.0, 3.0])).force(systems::gravity());
+    builder.with_constraint("nail", Nail::new(it, [1.0, 2.0, 3.0])).force(systems::gravity());
     builder.force(PointForce { particle: it, force: [5.0, 1.0, -4.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
@@ -132,8 +130,10 @@ fn lambda_of_a_nail_is_its_force_on_the_particle() {
 fn scalar_nail_carries_along_its_gradient_only() {
     let mut builder = System::builder(Dimension::Two);
     let it = builder.particle(Particle::at("it", [0.0, -0.1]).with_mass(2.0));
-    builder.constraint("nail", Nail { particle: it, at: [0.0; 3], form: NailForm::Scalar }).force(systems::gravity());
-    builder.force(PointForce { particle: ParticleId(0), force: [3.0, 0.0, 0.0] });
+    builder
+        .with_constraint("nail", Nail { particle: it, at: [0.0; 3], form: NailForm::Scalar })
+        .force(systems::gravity());
+    builder.force(PointForce { particle: systems::id(0), force: [3.0, 0.0, 0.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
     // J = (0, −0.2), so λ = −mg/0.2; sideways nothing holds.

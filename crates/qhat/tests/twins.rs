@@ -9,6 +9,7 @@ use qhat::{
     OnPlane, OnSphere, Particle, ParticleId, Plane, Purpose, Relation, Scope, Settings, Simulation, Spring, System,
     Volume, rigid_rods,
 };
+use std::sync::LazyLock;
 use systems::random::dimension;
 
 /// A kind and its twin.
@@ -43,7 +44,7 @@ kinds! {
     Limits Obstacle ExpressionConstraint
 }
 
-const P: [ParticleId; 5] = [ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(3), ParticleId(4)];
+static P: LazyLock<[ParticleId; 5]> = LazyLock::new(|| std::array::from_fn(systems::id));
 
 /// In two dimensions without z.
 const PLACES: [[f64; 3]; 7] = [
@@ -450,7 +451,7 @@ fn bent_wire(points: &[[f64; 3]], radius: f64) -> Constraint {
 }
 
 fn parse(text: &str, purpose: Purpose, d: usize) -> Expression {
-    let particle = |name: &str| name.strip_prefix('p')?.parse().ok().map(ParticleId);
+    let particle = |name: &str| name.strip_prefix('p')?.parse().ok().map(systems::id);
     let scope = Scope::new(purpose, dimension(d), &particle);
     Expression::parse(text, &scope).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
@@ -497,7 +498,7 @@ fn simulation(case: &Case, constraints: Vec<Constraint>, integrator: Integrator)
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {
             let square = |k: usize| {
-                let along = q[a.0 * d + k] - q[b.0 * d + k];
+                let along = q[a.index() * d + k] - q[b.index() * d + k];
                 along * along
             };
             let rest = 0.9 * (0..d).map(square).sum::<f64>().sqrt();
@@ -507,7 +508,7 @@ fn simulation(case: &Case, constraints: Vec<Constraint>, integrator: Integrator)
         }
     }
     builder.force(Gravity { acceleration: [0.3, -9.81, 0.2] });
-    builder.constraint("beside", Distance::new(ParticleId(5), ParticleId(6), 1.0));
+    builder.constraint("beside", Distance::new(systems::id(5), systems::id(6), 1.0));
     for (k, constraint) in constraints.into_iter().enumerate() {
         builder.constraint(format!("c{k}"), constraint);
     }

@@ -4,8 +4,8 @@
 mod systems;
 
 use qhat::{
-    Dimension, Distance, Drag, Formulation, Gravity, Integrator, MouseSpring, Nail, Particle, ParticleId, PointForce,
-    Settings, Simulation, Solver, Spring, State, StepError, System, Warning,
+    Dimension, Distance, Drag, Formulation, Gravity, Integrator, MouseSpring, Nail, Particle, PointForce, Settings,
+    Simulation, Solver, Spring, State, StepError, System, Warning,
 };
 use systems::random::Random;
 
@@ -40,7 +40,7 @@ fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
                 (0..d).map(|c| 0.3 * random.within(-1.0, 1.0) + if c == 0 { 0.5 } else { 0.0 }).collect();
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
             if i < links {
-                let rod = Distance::new(id, ParticleId(id.0 + 1), length);
+                let rod = Distance::new(id, systems::id(id.index() + 1), length);
                 let is_soft = random.below(12) == 0;
                 // Both ends held, by one rod: not for lanes.
                 let rod = if is_soft || links == 1 { rod.with_compliance(1e-2, 0.1) } else { rod };
@@ -53,9 +53,9 @@ fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
     }
     builder.force(Gravity { acceleration: [0.3, -9.81, 1.0] });
     if random.below(2) == 0 {
-        builder.force(Drag { coefficient: 0.1 }).force(Drag { coefficient: 0.02 });
+        builder.with_force(Drag { coefficient: 0.1 }).force(Drag { coefficient: 0.02 });
     }
-    let any = |random: &mut Random| ParticleId(random.below(count));
+    let any = |random: &mut Random| systems::id(random.below(count));
     builder.force(PointForce { particle: any(random), force: [0.01, 0.02, 0.03] });
     builder.force(MouseSpring { particle: any(random), target: [1.0, 0.0, 0.0], stiffness: 0.5, damping: 0.01 });
     for _ in 0..3 {
@@ -168,7 +168,7 @@ fn integrators_follow_one_another() {
             let settings = systems::settings(integrator, FRAME * (1.0 + 0.37 * (k % 5) as f64));
             simulation.set_settings(settings).unwrap();
             match k % 7 {
-                1 => simulation.grab(ParticleId(1), [0.5; 3]).unwrap(),
+                1 => simulation.grab(systems::id(1), [0.5; 3]).unwrap(),
                 3 => simulation.set_gravity([0.0, -1.0, 0.5]).unwrap(),
                 4 => simulation.set_drag(0.3).unwrap(),
                 5 => simulation.release(),
@@ -213,10 +213,10 @@ fn springs_without_measure_do_not_end_a_run() {
                 if is_general {
                     let d = builder.particle(Particle::at("d", [1.2, 0.4]));
                     builder
-                        .constraint("cd", Distance::new(c, d, 0.5))
+                        .with_constraint("cd", Distance::new(c, d, 0.5))
                         .constraint("db", Distance::new(d, b, 0.4472135954999579));
                 }
-                builder.force(Spring { a, b, stiffness, damping: 0.0, rest: 0.99 }).force(systems::gravity());
+                builder.with_force(Spring { a, b, stiffness, damping: 0.0, rest: 0.99 }).force(systems::gravity());
                 builder.build().unwrap()
             };
             let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Auto, FRAME)).unwrap();
@@ -273,7 +273,7 @@ fn the_classic_formulation_and_two_rods_between_the_same_particles() {
         let a = Particle::at("a", [0.0, 0.0]);
         let a = builder.particle(if is_held { a.fixed() } else { a });
         let b = builder.particle(Particle::at("b", [1.0, 0.0]));
-        builder.constraint("one", Distance::new(a, b, 1.0)).constraint("other", Distance::new(b, a, 1.0));
+        builder.with_constraint("one", Distance::new(a, b, 1.0)).constraint("other", Distance::new(b, a, 1.0));
         builder.force(systems::gravity());
         let (system, state) = builder.build().unwrap();
         let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Dop853, FRAME)).unwrap();

@@ -186,7 +186,7 @@ fn compound_pendulum_swings_as_one_of_two_thirds_its_length() {
         for (dimension, bar) in [(Dimension::Two, in_plane), (Dimension::Three, in_space)] {
             let mut builder = qhat::System::builder(dimension);
             let ids = add(&mut builder, dimension.number(), &bar, [0.0; 3], [0.0; 3]);
-            builder.constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
+            builder.with_constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
             let (system, state) = builder.build().unwrap();
             let simulation = Simulation::new(system, state, accurate()).unwrap();
             // The tolerance of a substep: an error of order 8 that does not add up in one direction. Measured: 5e-12.

@@ -2,7 +2,7 @@
 
 mod systems;
 
-use qhat::{Feedback, Gravity, Integrator, ParticleId, Settings, Simulation, State, System};
+use qhat::{Feedback, Gravity, Integrator, Settings, Simulation, State, System};
 use systems::dense::assert_close;
 
 fn tight(tolerance: f64) -> Settings {
@@ -182,7 +182,7 @@ fn mouse_spring_work_is_booked() {
     let mut simulation = Simulation::new(system, state, tight(1e-6)).unwrap();
     let start = simulation.energy().balance();
     assert_eq!(simulation.state().work().external, 0.0);
-    let tip = ParticleId(2);
+    let tip = systems::id(2);
     simulation.grab(tip, [1.6, 1.8, 0.0]).unwrap();
     // Taking hold one metre away stretches the spring: ½ ks · 1².
     let stiffness = simulation.mouse().unwrap().stiffness;

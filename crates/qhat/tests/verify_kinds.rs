@@ -3,8 +3,9 @@
 mod systems;
 
 use qhat::{
-    Anchor, Constraint, Curve, Dimension, Direction, Distance, Driven, Expression, Integrator, OnCircle, OnCurve,
-    OnLine, OnPlane, OnSphere, Particle, ParticleId, Purpose, Relation, Scope, Settings, Simulation, State, System,
+    Anchor, Constraint, Curve, Dimension, Direction, Distance, Driven, Expression, GeometryError, Integrator, OnCircle,
+    OnCurve, OnLine, OnPlane, OnSphere, Particle, ParticleId, Purpose, Relation, Scope, Settings, Simulation, State,
+    System,
 };
 use std::f64::consts::PI;
 use systems::G;
@@ -277,7 +278,7 @@ fn a_cycloid_is_faster_than_the_straight_line() {
     let arrive = |place: [f64; 2], velocity: [f64; 2], curve: Curve, duration: f64| {
         let mut builder = System::builder(Dimension::Two);
         let particle = builder.particle(Particle::at("bead", place).with_velocity(velocity));
-        builder.constraint("wire", OnCurve { particle, curve }).force(systems::gravity());
+        builder.with_constraint("wire", OnCurve { particle, curve }).force(systems::gravity());
         let (system, state) = builder.build().unwrap();
         let settings = Settings { tolerance: 1e-12, ..systems::settings(Integrator::Dop853, 0.01) };
         let mut simulation = Simulation::new(system, state, settings).unwrap();
@@ -362,7 +363,9 @@ fn what_cannot_be_is_refused() {
     refused(two, |a, _| OnSphere::new(a, Anchor::Point([f64::NAN; 3].map(Driven::Constant)), 1.0).into(), "finite");
     refused(two, |a, b| OnCircle::new(a, b, [0.0, 0.0, 1.0], 1.0).into(), "needs three dimensions");
     refused(three, |a, _| OnCurve { particle: a, curve: curve(&["s", "s"], 0.0, 1.0) }.into(), "3 components");
-    let not_a_curve = |made: Result<Curve, String>, words: &str| assert!(made.unwrap_err().contains(words));
+    let not_a_curve = |made: Result<Curve, GeometryError>, words: &str| {
+        assert!(made.unwrap_err().to_string().contains(words));
+    };
     not_a_curve(Curve::through(&[[0.0; 3]], false), "needs 2 points");
     not_a_curve(Curve::through(&[[0.0; 3], [0.0; 3]], false), "at one place");
     not_a_curve(Curve::polyline(&[[0.0; 3], [1.0, 0.0, 0.0]], -1.0, false), "must be positive");

@@ -100,7 +100,7 @@ impl Assembly<'_, '_, '_> {
         (a, b): (ParticleId, ParticleId),
         place: &Node,
     ) -> Option<f64> {
-        let length = self.distance(a.0, b.0);
+        let length = self.distance(a, b);
         let [one, other] = between.each_ref().map(|Id(id)| self.report.quoted(id));
         let complaint = if length == 0.0 {
             format!("a {what} needs a length, but {one} and {other} start at the same place")
@@ -168,7 +168,7 @@ impl Assembly<'_, '_, '_> {
 
     /// The rest length of a spring [m]: as given, else the distance at the start.
     pub(super) fn rest(&mut self, given: Option<f64>, ends: (ParticleId, ParticleId), place: &Node) -> Option<f64> {
-        let rest = given.unwrap_or_else(|| self.distance(ends.0.0, ends.1.0));
+        let rest = given.unwrap_or_else(|| self.distance(ends.0, ends.1));
         if !rest.is_finite() {
             let message = "its ends start too far apart to measure its rest length";
             self.report.error(place.key("between").span.clone(), message, Some("give `rest` [m]".into()));

@@ -57,9 +57,9 @@ impl Assembly<'_, '_, '_> {
                 self.add_named(it.id.as_ref(), format!("curve({})", it.particle.0), qhat::OnCurve { particle, curve });
                 Some(())
             }
-            Err(message) => {
+            Err(reason) => {
                 let span = if it.radius.is_some() { &place.key("points").span } else { &place.span };
-                self.report.error(span.clone(), message, None);
+                self.report.error(span.clone(), reason.to_string(), None);
                 None
             }
         }

@@ -46,7 +46,7 @@ impl Assembly<'_, '_, '_> {
                 Some(scale) => constraint.with_scale(scale),
                 None => constraint,
             };
-            if let Err(message) = constraint.check() {
+            if let Err(reason) = constraint.check() {
                 // The number of a scale has passed the schema: what is wrong is one of these.
                 let help = if constraint.expression().particles().is_empty() {
                     "write it in the coordinates of particles"
@@ -55,7 +55,7 @@ impl Assembly<'_, '_, '_> {
                 } else {
                     "C(q, t) and its derivatives must be finite numbers where the particles start, at t = 0"
                 };
-                self.report.error(place.span.clone(), message, Some(help.into()));
+                self.report.error(place.span.clone(), reason.to_string(), Some(help.into()));
                 return None;
             }
             let row = if is_list { format!("{name}[{k}]") } else { name.clone() };
@@ -160,7 +160,7 @@ impl Assembly<'_, '_, '_> {
     /// Why this cannot be a parameter, and what to do.
     fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
         match check_parameter(name, value) {
-            Err(message) => Some((message, None)),
+            Err(reason) => Some((reason.to_string(), None)),
             Ok(()) => self.ids.find(name).map(|_| {
                 let message = format!("{} is the id of a particle, too", self.report.quoted(name));
                 (message, Some("give the parameter another name".to_owned()))

@@ -14,8 +14,8 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// Where a particle starts, as the engine takes points.
-    pub(super) fn start(&self, ParticleId(i): ParticleId) -> [f64; 3] {
-        let start = &self.positions[i * self.dimension..][..self.dimension];
+    pub(super) fn start(&self, particle: ParticleId) -> [f64; 3] {
+        let start = &self.positions[particle.index() * self.dimension..][..self.dimension];
         std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
     }
 

@@ -36,7 +36,7 @@ impl Assembly<'_, '_, '_> {
         let (ab, cd) = (ab?, cd?);
         let ratio = match lengths.ratio {
             Some(ratio) => ratio,
-            None => self.distance(ab[0].0, ab[1].0) / self.distance(cd[0].0, cd[1].0),
+            None => self.distance(ab[0], ab[1]) / self.distance(cd[0], cd[1]),
         };
         if !(ratio.is_finite() && ratio > 0.0) {
             let message = "the ratio of these lengths at the start cannot be measured";
@@ -126,13 +126,13 @@ impl Assembly<'_, '_, '_> {
                     let [a, b] = ends.map(|end| &rigid.particles[end].0);
                     let name = self.free_constraint_name(format!("{a}-{b}"));
                     let [a, b] = ends.map(|end| particles[end]);
-                    let rod = Distance::new(a, b, self.distance(a.0, b.0));
+                    let rod = Distance::new(a, b, self.distance(a, b));
                     self.builder.constraint(name, rod);
                 }
                 Some(())
             }
-            Err(message) => {
-                let message = format!("this cluster cannot be held: {message}");
+            Err(reason) => {
+                let message = format!("this cluster cannot be held: {reason}");
                 self.report.error(place.span.clone(), message, None);
                 None
             }

@@ -77,7 +77,7 @@ impl Assembly<'_, '_, '_> {
     fn angle(&self, a: ParticleId, b: ParticleId, c: ParticleId) -> Option<f64> {
         let d = self.dimension;
         let arm = |end: ParticleId| -> [f64; 3] {
-            let of = |k: usize| self.positions[end.0 * d + k] - self.positions[b.0 * d + k];
+            let of = |k: usize| self.positions[end.index() * d + k] - self.positions[b.index() * d + k];
             std::array::from_fn(|k| if k < d { of(k) } else { 0.0 })
         };
         let dot = |u: [f64; 3], w: [f64; 3]| u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
@@ -91,7 +91,7 @@ impl Assembly<'_, '_, '_> {
 
     fn add_central_gravity(&mut self, load: &CentralGravity, place: &Node) -> Option<()> {
         for particle in self.those_or_all(load.particles.as_deref(), place)? {
-            let (center, mass) = (load.center.padded(), self.inertias[particle.0].mass);
+            let (center, mass) = (load.center.padded(), self.inertias[particle.index()].mass);
             self.builder.force(CentralForce::gravity(particle, mass, center, load.mu, load.softening));
         }
         Some(())
@@ -101,7 +101,7 @@ impl Assembly<'_, '_, '_> {
         let particles = self.different(&load.particles, place.key("particles"))?;
         for (i, &b) in particles.iter().enumerate() {
             for &a in &particles[..i] {
-                let pair = [self.inertias[a.0].mass, self.inertias[b.0].mass];
+                let pair = [a, b].map(|id| self.inertias[id.index()].mass);
                 self.builder.force(InverseSquare::gravity([a, b], pair, load.constant, load.softening));
             }
         }
@@ -149,7 +149,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let mut outline = self.different(&load.outline, place.key("outline"))?;
-        let x = |id: ParticleId| [self.positions[id.0 * 2], self.positions[id.0 * 2 + 1]];
+        let x = |id: ParticleId| [self.positions[id.index() * 2], self.positions[id.index() * 2 + 1]];
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         let twice_area: f64 = ends.map(|(&a, &b)| x(a)[0] * x(b)[1] - x(a)[1] * x(b)[0]).sum();
         if twice_area < 0.0 {
@@ -193,9 +193,9 @@ impl Assembly<'_, '_, '_> {
             return Some(());
         };
         let gas = Gas::new(facets, load.pressure, exponent, self.dimension_of_system(), &self.positions);
-        if let Err(message) = gas.check() {
+        if let Err(reason) = gas.check() {
             let help = "leave out `exponent` for a pressure that stays".to_owned();
-            self.report.error(place.span.clone(), message, Some(help));
+            self.report.error(place.span.clone(), reason.to_string(), Some(help));
             return None;
         }
         self.builder.force(gas);
@@ -219,7 +219,10 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn those_or_all(&mut self, ids: Option<&[Id]>, place: &Node) -> Option<Vec<ParticleId>> {
         match ids {
             Some(ids) => self.different(ids, place.key("particles")),
-            None => Some((0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed).map(ParticleId).collect()),
+            None => {
+                let free = (0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed);
+                free.map(|i| self.builder.particle_at(i)).collect()
+            }
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::tree::Node;
 use expressions::Untried;
 use ids::Ids;
 use loads::Inertia;
-use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
+use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, ParticleId, Settings, System, SystemBuilder};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -140,8 +140,8 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// The distance at the start [m].
-    fn distance(&self, a: usize, b: usize) -> f64 {
-        let d = self.dimension;
+    fn distance(&self, a: ParticleId, b: ParticleId) -> f64 {
+        let (d, a, b) = (self.dimension, a.index(), b.index());
         let squares = (0..d).map(|k| self.positions[a * d + k] - self.positions[b * d + k]).map(|x| x * x);
         squares.sum::<f64>().sqrt()
     }
@@ -155,5 +155,6 @@ fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &Places) -> Rang
         BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),
+        _ => 0..0,
     }
 }

@@ -188,7 +188,7 @@ fn add_sphere(sphere: &OnSphere, system: &System, t: f64, marks: &mut Vec<Mark>)
 fn add_gears(gears: &Gears, system: &System, state: &State, marks: &mut Vec<Mark>) {
     let length = |[a, b]: [ParticleId; 2]| {
         let (d, q) = (system.dimension(), state.positions());
-        (0..d).map(|k| q[d * a.0 + k] - q[d * b.0 + k]).map(|x| x * x).sum::<f64>().sqrt()
+        (0..d).map(|k| q[d * a.index() + k] - q[d * b.index() + k]).map(|x| x * x).sum::<f64>().sqrt()
     };
     let turns: Vec<_> = gears.turns().collect();
     let ways: Vec<_> = gears.ways().collect();

@@ -1,10 +1,13 @@
+#![expect(non_snake_case, reason = "the corners of a square are A, B, C, D")]
+
 use super::*;
 use qhat::{Angle, Area, Curve, Dimension, Expression, Lengths, OnCurve, OnLine, Particle, Purpose, Scope};
 
-const A: ParticleId = ParticleId(0);
-const B: ParticleId = ParticleId(1);
-const C: ParticleId = ParticleId(2);
-const D: ParticleId = ParticleId(3);
+/// The corners of the square.
+fn corners() -> [ParticleId; 4] {
+    let mut builder = System::builder(Dimension::Two);
+    ["a", "b", "c", "d"].map(|name| builder.particle(Particle::at(name, [0.0; 2])))
+}
 
 fn expression(text: &str, purpose: Purpose) -> Expression {
     Expression::parse(text, &Scope::new(purpose, Dimension::Two, &|_| None)).unwrap()
@@ -29,6 +32,7 @@ fn kinds(marks: &[Mark]) -> Vec<&'static str> {
 
 #[test]
 fn a_pulley_is_a_cord_and_a_ratio_ties() {
+    let [A, B, C, D] = corners();
     let cord = drawn([Lengths::pulley(&[A, B, C], 6.0).into()], 0.0);
     assert_eq!(kinds(&cord), ["cord", "cord"]);
     assert_eq!(cord[1].particles, [B, C]);
@@ -37,6 +41,7 @@ fn a_pulley_is_a_cord_and_a_ratio_ties() {
 
 #[test]
 fn a_rope_and_a_strut_know_their_limits() {
+    let [A, B, _, _] = corners();
     let limits = [Limits::rope(A, B, 4.0), Limits::strut(A, B, 2.0), Limits::between(A, B, 1.0, 4.0)];
     let drawn = drawn(limits.map(Constraint::from), 0.0);
     assert_eq!(kinds(&drawn), ["rope", "strut", "strut"]);
@@ -45,6 +50,7 @@ fn a_rope_and_a_strut_know_their_limits() {
 
 #[test]
 fn what_is_led_moves_with_time_and_nothing_else_does() {
+    let [A, B, C, _] = corners();
     let radius = Driven::Function(expression("3 + sin(t)", Purpose::Time));
     let rod = || Constraint::from(OnSphere::new(B, A, radius.clone()));
     let rail = Constraint::from(OnLine::fixed(C, [0.0, 3.0, 0.0], [1.0, 0.0, 0.0]));
@@ -58,6 +64,7 @@ fn what_is_led_moves_with_time_and_nothing_else_does() {
 
 #[test]
 fn a_wire_is_drawn_from_end_to_end_once() {
+    let [A, B, _, _] = corners();
     let path = ["s", "s^2"].map(|text| expression(text, Purpose::Curve)).to_vec();
     let curve = Curve::parametric(path, 0.0, 3.0).unwrap();
     let bead = |particle| Constraint::from(OnCurve { particle, curve: curve.clone() });
@@ -69,6 +76,7 @@ fn a_wire_is_drawn_from_end_to_end_once() {
 
 #[test]
 fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
+    let [A, B, C, _] = corners();
     let surface = Surface::HalfSpace { normal: [0.0, 2.0, 0.0], offset: -1.0 };
     let ground = drawn([A, B, C].map(|particle| Obstacle::new(particle, surface.clone()).into()), 0.0);
     assert_eq!(kinds(&ground), ["ground"]);
@@ -77,6 +85,7 @@ fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
 
 #[test]
 fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
+    let [A, B, C, D] = corners();
     let wheels = drawn([Gears::mesh([[A, D], [B, C]], [20, 10], 0.0).into()], 0.0);
     assert_eq!(kinds(&wheels), ["wheel", "wheel"]);
     assert_eq!((wheels[0].size, wheels[1].size), (2.0, 1.0));
@@ -87,6 +96,7 @@ fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
 
 #[test]
 fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
+    let [A, B, C, _] = corners();
     let point = [2.0, 4.0, 0.0].map(Driven::Constant);
     let nail = drawn([Relation { terms: vec![(A, 2.0)], point }.into()], 0.0);
     assert_eq!((nail[0].kind, nail[0].points.as_slice()), ("nail", [[1.0, 2.0, 0.0]].as_slice()));
@@ -98,6 +108,7 @@ fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
 
 #[test]
 fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
+    let [A, B, C, D] = corners();
     let right = std::f64::consts::FRAC_PI_2;
     let angle = Angle::between([A, B], [A, D], right);
     let turned = Angle::from_direction([1.0, 0.0, 0.0], [A, D], right);

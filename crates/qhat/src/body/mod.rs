@@ -23,9 +23,11 @@
 //! What is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so g_k = e_k/√12. A
 //! triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
 
+mod error;
 mod factor;
 
-use crate::error::BodyError;
+pub use error::BodyError;
+
 use crate::point::{add, dot, minus, norm, scaled};
 use crate::space::ParticleId;
 use factor::factor;

@@ -47,7 +47,7 @@ fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
         }
     }
     let last = ParticleId(lengths.iter().map(|links| links + 1).sum::<usize>() - 1);
-    builder.force(Gravity { acceleration: [0.3, -9.81, 1.0] }).force(Drag { coefficient: 0.2 });
+    builder.with_force(Gravity { acceleration: [0.3, -9.81, 1.0] }).force(Drag { coefficient: 0.2 });
     builder.force(PointForce { particle: last, force: [1.0, 2.0, 3.0] });
     builder.force(MouseSpring { particle: last, target: [0.0; 3], stiffness: 5.0, damping: 0.5 });
     builder.force(Spring { a: ParticleId(0), b: last, stiffness: 3.0, damping: 0.1, rest: 0.5 });
@@ -178,7 +178,7 @@ fn a_taut_line_goes_over_to_the_general_path() {
     let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
     let b = builder.particle(Particle::at("b", [1.0, 0.0]));
     let c = builder.particle(Particle::at("c", [2.0, 0.0]).fixed());
-    builder.constraint("ab", Distance::new(a, b, 1.0)).constraint("bc", Distance::new(b, c, 1.0));
+    builder.with_constraint("ab", Distance::new(a, b, 1.0)).constraint("bc", Distance::new(b, c, 1.0));
     builder.force(PointForce { particle: b, force: [1.0, 0.0, 0.0] });
     let (system, mut state) = builder.build().unwrap();
     let plan = system.chains.as_ref().unwrap();

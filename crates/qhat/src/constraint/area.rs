@@ -9,6 +9,7 @@
 //! Positive where the corners run counterclockwise. Places count from x_0, so that a polygon far from the origin keeps its digits.
 //! Fails where all corners fall into one place: the gradient vanishes. Sides may cross; the sum then counts loops with their sign.
 
+use super::error::ConstraintError;
 use super::smooth::Smooth;
 use crate::driven::Driven;
 use crate::number::{Number, minus};
@@ -28,8 +29,8 @@ impl Smooth for Area {
         1
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        crate::allowed::only_in(2, dimension)
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        super::error::only_in(2, dimension)
     }
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
@@ -61,13 +62,13 @@ impl Smooth for Area {
         self.area.value(0.0).abs().max(extent * extent)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.corners.len() < 3 {
-            return Err(format!("a polygon has three corners or more, not {}", self.corners.len()));
+            return Err(ConstraintError::PolygonCorners { count: self.corners.len() });
         }
-        if (1..self.corners.len()).any(|i| self.corners[..i].contains(&self.corners[i])) {
-            return Err("a particle can be one corner of a polygon only".into());
+        if let Some(corner) = (1..self.corners.len()).find(|&i| self.corners[..i].contains(&self.corners[i])) {
+            return Err(ConstraintError::PolygonCornerTwice { corner });
         }
-        self.area.check("an area")
+        Ok(self.area.check("an area")?)
     }
 }

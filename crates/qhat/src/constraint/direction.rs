@@ -8,6 +8,7 @@
 //! λ is a force across the line [N]. a may be on either side of b, and they may meet: nothing fails there. With u at rest every row is linear.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
+use super::error::ConstraintError;
 use super::moment::moment;
 use super::smooth::Smooth;
 use crate::number::{Number, dot, minus};
@@ -58,11 +59,11 @@ impl Smooth for Direction {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         check_direction(&self.along, "the direction of a line", dimension)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         check_different([self.a, self.b].into_iter(), "a direction")?;
         check_point(&self.along, "the direction of a line")
     }

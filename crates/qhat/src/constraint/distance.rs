@@ -33,8 +33,8 @@
 //! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
-use super::{Formulation, Holds, RowWriter, Softness};
-use crate::allowed::not_negative;
+use super::{ConstraintError, Formulation, Holds, RowWriter, Softness};
+use crate::allowed::{check_strength, not_negative, positive};
 use crate::force::{Force, Spring};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
@@ -192,27 +192,22 @@ impl Holds for Distance {
         Distance { form, ..self.clone() }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.a == self.b {
-            return Err("a distance constraint needs two different particles".into());
+            return Err(ConstraintError::SameEnds { what: "a distance constraint" });
         }
-        if !(self.length.is_finite() && self.length > 0.0) {
-            return Err(format!(
-                "the length of a distance constraint must be positive and finite, but is {}",
-                self.length
-            ));
-        }
+        positive("the length of a distance constraint", self.length)?;
         not_negative("the compliance of a distance constraint", self.compliance)?;
         not_negative("the damping of a distance constraint", self.damping)?;
         if self.compliance > 0.0 && !(1.0 / self.compliance).is_finite() {
-            return Err(format!("a compliance of {:e} m/N is too small to divide by; 0 is rigid", self.compliance));
+            return Err(ConstraintError::ComplianceTooSmall { compliance: self.compliance });
         }
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
-            return Err("a rod with a compliance must be held in the length form".into());
+            return Err(ConstraintError::ComplianceInSquaredForm);
         }
         if self.breaks_at.is_some() && self.compliance > 0.0 {
-            return Err("a rod with a compliance cannot break: leave out one of the two".into());
+            return Err(ConstraintError::ComplianceThatBreaks);
         }
-        crate::allowed::check_strength(self.breaks_at)
+        Ok(check_strength(self.breaks_at)?)
     }
 }

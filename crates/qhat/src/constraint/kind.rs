@@ -1,5 +1,6 @@
 //! What every kind of constraint answers, and the words in which it answers.
 
+use super::error::ConstraintError;
 use super::jacobian::RowWriter;
 use crate::force::Force;
 use crate::point::Motion;
@@ -67,13 +68,13 @@ pub(crate) trait Holds {
     /// The same constraint in the forms of another formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
-    /// Why it cannot be in d dimensions, in words.
-    fn fits(&self, _dimension: usize) -> Result<(), String> {
+    /// `Ok` if it can be in d dimensions.
+    fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
         Ok(())
     }
 
-    /// What is wrong with its numbers, in words.
-    fn check(&self) -> Result<(), String>;
+    /// `Ok` if its numbers are in range.
+    fn check(&self) -> Result<(), ConstraintError>;
 }
 
 /// A row of a constraint that opens and closes, C ≥ 0 and λ ≥ 0, with its rows of friction; rows count from its first.

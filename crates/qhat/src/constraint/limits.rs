@@ -9,8 +9,8 @@
 //!
 //! Where it jerks taut, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0: no direction; the first axis is taken.
 
-use super::{ContactRows, Formulation, Holds, RowWriter};
-use crate::allowed::not_negative;
+use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
+use crate::allowed::{check_restitution, check_strength, not_negative, positive};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -121,27 +121,22 @@ impl Holds for Limits {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.a == self.b {
-            return Err("a rope or strut needs two different particles".into());
+            return Err(ConstraintError::SameEnds { what: "a rope or strut" });
         }
         match (self.shortest, self.longest) {
-            (None, None) => return Err("give the shortest length, the longest, or both".into()),
+            (None, None) => return Err(ConstraintError::NoLimits),
             (Some(shortest), Some(longest)) if shortest >= longest => {
-                return Err(format!(
-                    "the longest length must be more than the shortest, but {longest} m is not more than {shortest} m; a rod holds one length"
-                ));
+                return Err(ConstraintError::LimitsCrossed { shortest, longest });
             }
             _ => {}
         }
         not_negative("the shortest length", self.shortest.unwrap_or(0.0))?;
-        match self.longest {
-            Some(longest) if !(longest.is_finite() && longest > 0.0) => {
-                return Err(format!("the longest length must be positive and finite, but is {longest}"));
-            }
-            _ => {}
+        if let Some(longest) = self.longest {
+            positive("the longest length", longest)?;
         }
-        crate::allowed::check_restitution(self.restitution)?;
-        crate::allowed::check_strength(self.breaks_at)
+        check_restitution(self.restitution)?;
+        Ok(check_strength(self.breaks_at)?)
     }
 }

@@ -10,6 +10,7 @@ mod arms;
 mod curve;
 mod direction;
 mod distance;
+mod error;
 mod expression;
 mod gears;
 mod jacobian;
@@ -42,6 +43,7 @@ pub use area::Area;
 pub use curve::Curve;
 pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
+pub use error::ConstraintError;
 pub use expression::ExpressionConstraint;
 pub use gears::Gears;
 pub use jacobian::Jacobian;
@@ -125,10 +127,10 @@ macro_rules! constraints {
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
             }
-            fn fits(&self, dimension: usize) -> Result<(), String> {
+            fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
                 match self { $(Constraint::$kind(constraint) => constraint.fits(dimension),)* }
             }
-            fn check(&self) -> Result<(), String> {
+            fn check(&self) -> Result<(), ConstraintError> {
                 match self { $(Constraint::$kind(constraint) => constraint.check(),)* }
             }
         }

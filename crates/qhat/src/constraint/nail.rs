@@ -15,7 +15,8 @@
 //! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
 //! That is why the source needed its diagonal drag.
 
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, RowWriter};
+use crate::allowed::all_finite;
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, dot, first, minus, scaled};
 use crate::space::ParticleId;
@@ -119,7 +120,7 @@ impl Holds for Nail {
         Nail { form, ..self.clone() }
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.at.iter().try_for_each(|&component| crate::allowed::finite("the point of a nail", component))
+    fn check(&self) -> Result<(), ConstraintError> {
+        Ok(all_finite("the point of a nail", &self.at)?)
     }
 }

@@ -18,8 +18,8 @@
 //!
 //! Fails in the centre of a ball, where there is no direction; the first axis is taken.
 
-use super::{ContactRows, Formulation, Holds, RowWriter};
-use crate::allowed::{finite, not_negative};
+use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
+use crate::allowed::{all_finite, check_restitution, finite, not_negative, positive};
 use crate::linalg::block::{Block, diagonal, outer, plus, zero};
 use crate::point::{Motion, Point, dot, first, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -192,29 +192,23 @@ impl Holds for Obstacle {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
-        crate::allowed::check_restitution(self.restitution)?;
+    fn check(&self) -> Result<(), ConstraintError> {
+        check_restitution(self.restitution)?;
         not_negative("the friction of a barrier", self.friction)?;
-        let positive = |what: &str, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(format!("{what} must be positive and finite, but is {value}"))
-            }
-        };
         match &self.surface {
             Surface::HalfSpace { normal, offset } => {
                 finite("the offset of a half-space", *offset)?;
-                positive("the length of the normal of a half-space", norm(*normal))
+                positive("the length of the normal of a half-space", norm(*normal))?;
             }
             Surface::Ball { centre, radius, .. } => {
-                centre.iter().try_for_each(|&x| finite("the centre of a ball", x))?;
-                positive("the radius of a ball", *radius)
+                all_finite("the centre of a ball", centre)?;
+                positive("the radius of a ball", *radius)?;
             }
             Surface::Box { centre, half } => {
-                centre.iter().try_for_each(|&x| finite("the centre of a box", x))?;
-                half.iter().try_for_each(|&half| positive("half the size of a box", half))
+                all_finite("the centre of a box", centre)?;
+                half.iter().try_for_each(|&half| positive("half the size of a box", half))?;
             }
         }
+        Ok(())
     }
 }

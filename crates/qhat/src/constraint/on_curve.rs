@@ -14,6 +14,7 @@
 //! method of high order some of its order there. The corners of a polyline begin and end with a jump of c" itself (polyline.rs says what that costs).
 
 use super::curve::{Curve, Foot};
+use super::error::ConstraintError;
 use super::smooth::Smooth;
 use crate::number::{Number, dot, norm};
 use crate::space::ParticleId;
@@ -63,11 +64,11 @@ impl Smooth for OnCurve {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        self.curve.fits(dimension)
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        Ok(self.curve.fits(dimension)?)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         Ok(())
     }
 }

@@ -10,7 +10,7 @@
 //! So a kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`), and nothing else is
 //! derived by hand.
 
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
 use crate::number::{Dual, Number};
 use crate::point::{Motion, dot};
@@ -44,12 +44,12 @@ pub(crate) trait Smooth: Clone {
     fn scale(&self, extent: f64) -> f64;
 
     /// Why it cannot be in d dimensions, in words.
-    fn fits(&self, _dimension: usize) -> Result<(), String> {
+    fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
         Ok(())
     }
 
     /// What is wrong with its numbers, in words.
-    fn check(&self) -> Result<(), String>;
+    fn check(&self) -> Result<(), ConstraintError>;
 }
 
 /// Calls `visit(j, k, i, column)` with ∂²C/∂x_i ∂x_jk of one row.
@@ -156,11 +156,11 @@ impl<S: Smooth> Holds for S {
         self.clone()
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Smooth::fits(self, dimension)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         Smooth::check(self)
     }
 }

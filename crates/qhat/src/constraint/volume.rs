@@ -11,6 +11,7 @@
 //! that run along it in opposite directions: then neither C nor its gradient depends on the point places are counted from. Fails
 //! where all corners lie in one line or place: the gradient vanishes.
 
+use super::error::ConstraintError;
 use super::smooth::Smooth;
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, minus, plus, raised};
@@ -62,8 +63,8 @@ impl Smooth for Volume {
         1
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        crate::allowed::only_in(3, dimension)
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        super::error::only_in(3, dimension)
     }
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
@@ -99,19 +100,19 @@ impl Smooth for Volume {
         self.volume.value(0.0).abs().max(extent * extent * extent)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         let mut sides = HashSet::new();
-        for &[a, b, c] in &self.faces {
+        for (face, &[a, b, c]) in self.faces.iter().enumerate() {
             if a == b || b == c || c == a {
-                return Err("a face has three different corners".into());
+                return Err(ConstraintError::FaceCorners { face });
             }
             if ![[a, b], [b, c], [c, a]].into_iter().all(|side| sides.insert(side)) {
-                return Err("two faces run along one side in the same direction: turn one of them round".into());
+                return Err(ConstraintError::FaceTurned { face });
             }
         }
         if self.faces.is_empty() || sides.iter().any(|&[a, b]| !sides.contains(&[b, a])) {
-            return Err("the surface is not closed: each side needs a face on either side of it".into());
+            return Err(ConstraintError::NotClosed);
         }
-        self.volume.check("a volume")
+        Ok(self.volume.check("a volume")?)
     }
 }

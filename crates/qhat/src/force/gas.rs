@@ -12,7 +12,8 @@
 //! A above 0, with an energy that goes to infinity there where γ ≥ 1; beyond, its numbers are none, and an adaptive method turns back.
 
 use super::pressure::Facet;
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::positive;
 use crate::linalg::block::outer;
 use crate::point::{Motion, Point, add, norm};
 use crate::space::{Dimension, ParticleId};
@@ -77,18 +78,15 @@ impl Gas {
     /// `Ok` if this is a gas that can be.
     ///
     /// # Errors
-    /// In words: what is wrong with its numbers or with what holds it.
-    pub fn check(&self) -> Result<(), String> {
-        for (what, number) in [("pressure", self.pressure), ("exponent", self.exponent)] {
-            if !(number > 0.0 && number.is_finite()) {
-                return Err(format!("the {what} of a gas must be positive and finite, but is {number}"));
-            }
-        }
+    /// A pressure, exponent or content that is not positive; too many particles; a facet with a particle at two corners.
+    pub fn check(&self) -> Result<(), ForceError> {
+        positive("the pressure of a gas", self.pressure)?;
+        positive("the exponent of a gas", self.exponent)?;
         if !(self.content > 0.0 && self.content.is_finite()) {
-            return Err(format!("a gas must fill more than nothing at the start, but fills {}", self.content));
+            return Err(ForceError::GasContent { content: self.content });
         }
         if self.particles.len() > MOST {
-            return Err(format!("a gas is held by at most {MOST} particles, not {}", self.particles.len()));
+            return Err(ForceError::GasParticles { most: MOST, count: self.particles.len() });
         }
         self.facets.iter().try_for_each(Facet::check)
     }
@@ -173,7 +171,7 @@ impl Acts for Gas {
         self.particles.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         self.check()
     }
 }

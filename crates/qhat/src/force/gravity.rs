@@ -5,8 +5,8 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, Dependence};
-use crate::allowed::finite;
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::all_finite;
 use crate::point::{Motion, add, dot, first, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -53,7 +53,7 @@ impl Acts for Gravity {
         Vec::new()
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.acceleration.iter().try_for_each(|&component| finite("gravity", component))
+    fn check(&self) -> Result<(), ForceError> {
+        Ok(all_finite("gravity", &self.acceleration)?)
     }
 }

@@ -1,5 +1,6 @@
 //! What every kind of force answers.
 
+use super::ForceError;
 use crate::point::Motion;
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -39,8 +40,8 @@ pub(crate) trait Acts {
     /// The particles this force names, each once; empty when it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// What is wrong with its numbers, in words.
-    fn check(&self) -> Result<(), String>;
+    /// `Ok` if its numbers are in range.
+    fn check(&self) -> Result<(), ForceError>;
 }
 
 /// What a force changes with.

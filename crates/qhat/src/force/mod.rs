@@ -7,6 +7,7 @@ mod air_drag;
 mod central;
 mod cubic_spring;
 mod drag;
+mod error;
 mod expression;
 mod gas;
 mod gravity;
@@ -27,6 +28,7 @@ pub use air_drag::AirDrag;
 pub use central::CentralForce;
 pub use cubic_spring::CubicSpring;
 pub use drag::Drag;
+pub use error::ForceError;
 pub use expression::{ExpressionForce, ExpressionPotential};
 pub use gas::Gas;
 pub use gravity::Gravity;
@@ -83,7 +85,7 @@ macro_rules! forces {
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }
             }
-            fn check(&self) -> Result<(), String> {
+            fn check(&self) -> Result<(), ForceError> {
                 match self { $(Force::$kind(force) => force.check(),)* }
             }
         }

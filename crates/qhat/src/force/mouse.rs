@@ -8,8 +8,8 @@
 //!
 //! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
 
-use super::{Acts, Dependence};
-use crate::allowed::{finite, not_negative};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::{all_finite, not_negative};
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, first, minus, scaled};
 use crate::space::ParticleId;
@@ -67,9 +67,9 @@ impl Acts for MouseSpring {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         not_negative("the stiffness of the mouse spring", self.stiffness)?;
         not_negative("the damping of the mouse spring", self.damping)?;
-        self.target.iter().try_for_each(|&component| finite("the target of the mouse spring", component))
+        Ok(all_finite("the target of the mouse spring", &self.target)?)
     }
 }

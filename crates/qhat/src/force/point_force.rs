@@ -5,8 +5,8 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, Dependence};
-use crate::allowed::finite;
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::all_finite;
 use crate::point::{Motion, add, dot, first};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -51,7 +51,7 @@ impl Acts for PointForce {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.force.iter().try_for_each(|&component| finite("a point force", component))
+    fn check(&self) -> Result<(), ForceError> {
+        Ok(all_finite("a point force", &self.force)?)
     }
 }
