@@ -4,9 +4,7 @@ use crate::marks::Mark;
 use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Marks, Projection, StepReport, Structure, Terms};
 use js_sys::Float64Array;
-use qhat::{
-    Constraint, DistanceForm, EventKind, Feedback, Force, Formulation, NailForm, Settings, Simulation, System, Warning,
-};
+use qhat::{Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, Settings, Simulation, System, Warning};
 use wasm_bindgen::{JsCast, JsValue};
 
 /// J and A cross only where a person could read them: cells of the larger one, m × N.
@@ -101,15 +99,7 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
 
 /// What happened, to which constraint, and when.
 fn event(event: &qhat::Event) -> Record {
-    let kind = match event.kind {
-        EventKind::Impact { .. } => "impact",
-        EventKind::Closed => "closed",
-        EventKind::Opened => "opened",
-        EventKind::Slipped => "slipped",
-        EventKind::Stuck => "stuck",
-        EventKind::Broke => "broke",
-    };
-    Record::new().with("kind", kind).with("constraint", event.constraint.as_str()).with("time", event.time)
+    Record::new().with("kind", event.kind.name()).with("constraint", event.constraint.as_str()).with("time", event.time)
 }
 
 pub(crate) fn projection(projection: &qhat::Projection) -> Projection {

@@ -1,8 +1,9 @@
 //! A number that may change with time: the length of a driven rod, the angle of a crank.
 
 use crate::allowed::{ValueError, finite};
-use crate::expression::Expression;
+use crate::expression::{Expression, ExpressionError, Purpose, Scope};
 use crate::number::Number;
+use crate::space::Dimension;
 
 /// A number, or a function of t alone.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,23 @@ impl Driven {
                 (t.with(jet.value, jet.first), t.with(jet.first, jet.second))
             }
         }
+    }
+
+    /// A function of t [s] from its text, as in `"2*pi*t"`.
+    ///
+    /// ```
+    /// use qhat::Driven;
+    /// let angle = Driven::text("pi/2 + 2*pi*t")?;
+    /// assert!((angle.value(0.25) - std::f64::consts::PI).abs() < 1e-15);
+    /// # Ok::<(), qhat::ExpressionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A text that is no expression of `t`, with the place that is wrong.
+    pub fn text(text: &str) -> Result<Self, ExpressionError> {
+        // A function of time alone is the same in any number of dimensions.
+        let scope = Scope::new(Purpose::Time, Dimension::Two, &|_| None);
+        Expression::parse(text, &scope).map(Driven::Function)
     }
 
     /// Its value at t [s].
@@ -50,5 +68,13 @@ impl From<f64> for Driven {
 impl From<Expression> for Driven {
     fn from(function: Expression) -> Self {
         Driven::Function(function)
+    }
+}
+
+impl TryFrom<&str> for Driven {
+    type Error = ExpressionError;
+
+    fn try_from(text: &str) -> Result<Self, ExpressionError> {
+        Driven::text(text)
     }
 }

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why a step was not taken. The state is the last good one.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StepError {
     /// A coordinate or velocity became infinite or undefined.
     #[error(

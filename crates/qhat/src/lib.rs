@@ -72,7 +72,7 @@ pub use cluster::rigid_rods;
 pub use constraint::{
     Anchor, Angle, Area, Constraint, ConstraintError, Curve, Direction, Distance, DistanceForm, DrivenPoint,
     ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint,
-    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Surface, Volume,
+    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Rope, Strut, Surface, Volume,
 };
 pub use driven::Driven;
 pub use energy::Energy;

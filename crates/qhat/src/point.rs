@@ -29,6 +29,24 @@ impl From<Vector> for [f64; 3] {
     }
 }
 
+/// Conversions from and to the vectors of other crates.
+#[cfg(feature = "mint")]
+mod with_mint {
+    use super::Vector;
+
+    macro_rules! through_mint {
+        ($($kind:ident: $size:literal,)*) => {$(
+            impl From<mint::$kind<f64>> for Vector {
+                fn from(vector: mint::$kind<f64>) -> Self {
+                    Vector::from(<[f64; $size]>::from(vector))
+                }
+            }
+        )*};
+    }
+
+    through_mint! { Vector2: 2, Point2: 2, Vector3: 3, Point3: 3, }
+}
+
 /// A point or vector in D dimensions.
 pub(crate) type Point<const D: usize> = [f64; D];
 

@@ -6,6 +6,8 @@ use std::fmt;
 
 /// One frame or step in numbers. Maxima are over its substeps.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct StepReport {
     /// Substeps taken (1 for a step of a fixed-step integrator).
     pub substeps: usize,
@@ -37,6 +39,8 @@ pub struct StepReport {
 
 /// Something that happened at a moment.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Event {
     /// t [s].
     pub time: f64,
@@ -48,6 +52,8 @@ pub struct Event {
 
 /// What can happen to a constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum EventKind {
     /// It was hit faster than what rests.
     Impact {
@@ -64,6 +70,26 @@ pub enum EventKind {
     Stuck,
     /// It broke, for good.
     Broke,
+}
+
+impl EventKind {
+    /// The word for it: `impact`, `closed`, `opened`, `slipped`, `stuck` or `broke`.
+    pub fn name(self) -> &'static str {
+        match self {
+            EventKind::Impact { .. } => "impact",
+            EventKind::Closed => "closed",
+            EventKind::Opened => "opened",
+            EventKind::Slipped => "slipped",
+            EventKind::Stuck => "stuck",
+            EventKind::Broke => "broke",
+        }
+    }
+}
+
+impl fmt::Display for EventKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 impl StepReport {
@@ -105,6 +131,8 @@ impl StepReport {
 
 /// A path to the multipliers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Solver {
     /// Rows of A = J W Jᵀ, each component by its own method: see [`crate::System::components`].
     #[default]
@@ -127,6 +155,8 @@ impl fmt::Display for Solver {
 
 /// A condition that did not stop the step.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Warning {
     /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
     Singular,
@@ -187,6 +217,8 @@ impl fmt::Display for Warning {
 
 /// What it took to bring a state onto C = 0 and Ċ = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Projection {
     /// The farthest any particle was moved [m]; 0 if the state was consistent.
     pub moved: f64,

@@ -40,6 +40,7 @@ macro_rules! ids {
     ($($(#[$doc:meta])* $id:ident,)*) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         pub struct $id(pub(crate) usize);
 
         impl $id {

@@ -15,8 +15,8 @@ const FRAME: f64 = 1.0 / 60.0;
 fn surfaces() -> [Surface; 3] {
     [
         Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 },
-        Surface::Ball { centre: [-0.5, -0.5, 0.0], radius: 1.0, inside: false },
-        Surface::Box { centre: [1.0, 0.0, 0.0], half: [0.5, 0.4, 0.5] },
+        Surface::Ball { center: [-0.5, -0.5, 0.0], radius: 1.0, inside: false },
+        Surface::Box { center: [1.0, 0.0, 0.0], half: [0.5, 0.4, 0.5] },
     ]
 }
 

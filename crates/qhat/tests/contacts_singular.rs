@@ -74,7 +74,7 @@ fn what_slides_over_an_edge_falls_from_there() {
             velocity[0] = speed;
             let particle = Particle::at("puck", [1.0 - radius - way, 0.5, 0.1][..d].to_vec()).with_velocity(velocity);
             let puck = builder.particle(particle);
-            let block = Surface::Box { centre: [0.0; 3], half: [1.0, 0.5, 1.0] };
+            let block = Surface::Box { center: [0.0; 3], half: [1.0, 0.5, 1.0] };
             builder.with_constraint("box", Obstacle { friction, ..Obstacle::new(puck, block) }).force(gravity());
             let mut simulation = start(builder);
             for _ in 0..30 {

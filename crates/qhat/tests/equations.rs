@@ -49,7 +49,7 @@ fn check(make: impl Fn(&mut Random) -> Constraint, formula: impl Fn(&[&[f64]]) -
             let (system, state) = build(&mut random, d, constraint);
             let (q, v) = (state.positions(), state.velocities());
             let terms = evaluate(&system, &state);
-            let at = |q: Vec<f64>| evaluate(&system, &state.at(q, v.to_vec()));
+            let at = |q: Vec<f64>| evaluate(&system, &state.with_motion(q, v.to_vec()));
 
             // Roundoff of a few operations on numbers below 30.
             assert_all_close("C", &terms.residual, &formula(&q.chunks(d).collect::<Vec<_>>()), 1e-13);

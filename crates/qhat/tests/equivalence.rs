@@ -100,7 +100,10 @@ fn hubs(d: usize, redundant: bool) -> (System, State) {
             builder.constraint(format!("g{i}"), Distance::new(tip, ground, norm(&x)));
         }
         if i == 3 {
-            builder.constraint("nail", Nail::new(tip, std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))));
+            builder.constraint(
+                "nail",
+                Nail::new(tip, std::array::from_fn::<_, 3, _>(|k| x.get(k).copied().unwrap_or(0.0))),
+            );
         }
         if redundant && i % 20 == 5 {
             builder.constraint(format!("again{i}"), Distance::new(a, tip, apart(&left, &x)));
@@ -137,7 +140,7 @@ fn moving(random: &mut Random, (system, state): (System, State)) -> (System, Sta
         let v = random.within(-1.0, 1.0);
         if system.inverse_masses()[k / d] == 0.0 { 0.0 } else { v }
     });
-    let mut state = state.at(state.positions().to_vec(), v.collect());
+    let mut state = state.with_motion(state.positions().to_vec(), v.collect());
     project(&system, &mut state, &Settings::default(), &mut Workspace::new(&system)).unwrap();
     (system, state)
 }
@@ -188,7 +191,7 @@ fn redundant_systems_equal_the_pseudo_inverse() {
 fn contradicting_rows_come_as_near_as_they_can() {
     let mut random = Random::new(14);
     for (system, state) in [systems::truss(4, true), systems::net(2)] {
-        let state = state.at(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
+        let state = state.with_motion(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
         let terms = evaluate(&system, &state);
         let (lambda, rank) = reference(&terms);
         assert_eq!((terms.rank, rank), (Some(system.row_count() - 1), system.row_count() - 1));

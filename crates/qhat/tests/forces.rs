@@ -24,7 +24,7 @@ fn build(random: &mut Random, d: usize, force: Force) -> (System, State) {
 
 /// V at other positions, through the public door.
 fn potential(system: &System, state: &State, q: Vec<f64>) -> f64 {
-    let state = state.at(q, state.velocities().to_vec());
+    let state = state.with_motion(q, state.velocities().to_vec());
     let settings = systems::settings(Integrator::Euler, 0.01);
     Simulation::new(system.clone(), state, settings).unwrap().energy().potential
 }
@@ -61,7 +61,7 @@ fn check(make: impl Fn(&mut Random) -> Force, formula: Formula<'_>, takes_energy
             // Roundoff of a few operations on numbers below 100.
             assert_all_close("Q", &Q, &expected, 1e-12);
 
-            let at_rest = evaluate(&system, &state.at(q.to_vec(), vec![0.0; q.len()])).applied_forces;
+            let at_rest = evaluate(&system, &state.with_motion(q.to_vec(), vec![0.0; q.len()])).applied_forces;
             for k in 0..q.len() {
                 let axis: Vec<f64> = (0..q.len()).map(|j| if j == k { 1.0 } else { 0.0 }).collect();
                 assert_close("Q at rest = −∂V/∂q", at_rest[k], -slope(&system, &state, &axis), 1e-8);

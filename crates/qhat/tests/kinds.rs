@@ -213,7 +213,7 @@ fn every_kind_agrees_with_differences_and_with_its_expression() {
             });
             let at = |q: Vec<f64>, tau: f64| {
                 let system = &at[((tau / DELTA).round() + 2.0) as usize];
-                evaluate(system, &state.at(q, v.to_vec()))
+                evaluate(system, &state.with_motion(q, v.to_vec()))
             };
             let terms = evaluate(&system, &state);
             let J = terms.jacobian.to_dense();

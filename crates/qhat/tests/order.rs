@@ -150,7 +150,7 @@ fn rattle_is_reversible() {
             assert_eq!(report.substeps, 1);
         }
         let turned = state.velocities().iter().map(|v| -v).collect();
-        state = state.at(state.positions().to_vec(), turned);
+        state = state.with_motion(state.positions().to_vec(), turned);
     }
     // Roundoff of 1000 steps, multiplied by the motion's own sensitivity (about 1e2 in a second).
     let error = difference(state.positions(), start.positions());

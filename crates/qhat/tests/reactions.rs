@@ -42,7 +42,7 @@ fn constraint_force_does_no_work_on_legal_motion() {
         let v = random.numbers(state.velocities().len(), -1.0, 1.0);
         let d = system.dimension();
         let v = v.iter().enumerate().map(|(k, v)| if system.inverse_masses()[k / d] == 0.0 { 0.0 } else { *v });
-        state = state.at(state.positions().to_vec(), v.collect());
+        state = state.with_motion(state.positions().to_vec(), v.collect());
         legal(&system, &mut state);
         let terms = evaluate(&system, &state);
         assert_close("Q̂·q̇", dot(&terms.constraint_forces, &terms.velocities), 0.0, 1e-12 * size(&terms));
@@ -55,7 +55,7 @@ fn internal_forces_change_no_momentum() {
     let mut random = Random::new(4);
     for _ in 0..20 {
         let (system, start) = systems::free_structure();
-        let state = start.at(random.numbers(12, -1.0, 1.0), random.numbers(12, -1.0, 1.0));
+        let state = start.with_motion(random.numbers(12, -1.0, 1.0), random.numbers(12, -1.0, 1.0));
         let terms = evaluate(&system, &state);
         let change: Vec<f64> = (0..12).map(|k| system.masses()[k / 3] * terms.accelerations[k]).collect();
         let size: f64 = change.iter().map(|f| f.abs()).sum();

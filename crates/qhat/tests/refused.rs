@@ -229,8 +229,8 @@ fn a_start_that_is_not_finite() {
         for integrator in Integrator::ALL {
             let (system, start) = systems::pendulum(1.0);
             for state in [
-                start.at(vec![0.0, 0.0, bad, 0.0], vec![0.0; 4]),
-                start.at(start.positions().to_vec(), vec![0.0, 0.0, 0.0, bad]),
+                start.with_motion(vec![0.0, 0.0, bad, 0.0], vec![0.0; 4]),
+                start.with_motion(start.positions().to_vec(), vec![0.0, 0.0, 0.0, bad]),
             ] {
                 let settings = systems::settings(integrator, 0.01);
                 let refused = Simulation::new(system.clone(), state.clone(), settings).and_then(|mut s| s.step());

@@ -34,7 +34,17 @@ macro_rules! kinds {
             match constraint {
                 $(Constraint::$equality(_) => Some(stringify!($equality)),)*
                 $(Constraint::$other(_) => None,)*
+                _ => panic!("the kind {} is not in the list", constraint.kind()),
             }
+        }
+
+        #[test]
+        fn the_list_names_every_kind() {
+            let mut listed = [$(stringify!($equality),)* $(stringify!($other)),*];
+            let mut kinds = Constraint::KINDS.to_vec();
+            listed.sort_unstable();
+            kinds.sort_unstable();
+            assert_eq!(listed.as_slice(), kinds);
         }
     };
 }

@@ -33,7 +33,7 @@ fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
             if is_first && first == 1 || is_last && last == 1 {
                 builder.constraint(
                     format!("nail {chain}-{i}"),
-                    Nail::new(id, std::array::from_fn(|c| *x.get(c).unwrap_or(&0.0))),
+                    Nail::new(id, std::array::from_fn::<_, 3, _>(|c| *x.get(c).unwrap_or(&0.0))),
                 );
             }
             let step: Vec<f64> =

@@ -31,7 +31,7 @@ fn assert_moments(what: &str, body: &Body, mass: f64, centre: [f64; 3], S: [[f64
     let found = moments(&body.points, &body.masses);
     assert_close(what, found.0, mass, ROUNDING);
     assert_all_close(what, &found.1, &centre, ROUNDING);
-    assert_all_close(what, &body.centre(), &centre, ROUNDING);
+    assert_all_close(what, &body.center(), &centre, ROUNDING);
     assert_all_close(what, found.2.as_flattened(), S.as_flattened(), ROUNDING);
     assert!(body.masses.iter().all(|&m| m > 0.0), "{what}");
 }

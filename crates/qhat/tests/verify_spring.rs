@@ -62,7 +62,7 @@ fn frequency_and_damping_of_a_mass_on_a_spring() {
 #[test]
 fn a_spring_at_rest_length_is_at_rest() {
     let (system, state) = oscillator(0.5);
-    let state = state.at(vec![0.0, 0.0, REST, 0.0], vec![0.0; 4]);
+    let state = state.with_motion(vec![0.0, 0.0, REST, 0.0], vec![0.0; 4]);
     for integrator in Integrator::ALL {
         let mut simulation =
             Simulation::new(system.clone(), state.clone(), systems::settings(integrator, 0.01)).unwrap();

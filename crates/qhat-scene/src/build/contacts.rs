@@ -60,7 +60,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     pub(super) fn add_ball(&mut self, it: &Ball, place: &Node) -> Option<()> {
-        let surface = Surface::Ball { centre: it.center.padded(), radius: it.radius, inside: it.inside };
+        let surface = Surface::Ball { center: it.center.padded(), radius: it.radius, inside: it.inside };
         self.add_barriers(
             (it.id.as_ref(), "ball"),
             it.particles.as_deref(),
@@ -79,7 +79,7 @@ impl Assembly<'_, '_, '_> {
         }
         // In the plane the third is not looked at, and must only be positive.
         let half = std::array::from_fn(|k| it.size.0.get(k).map_or(1.0, |size| 0.5 * size));
-        let surface = Surface::Box { centre: it.center.padded(), half };
+        let surface = Surface::Box { center: it.center.padded(), half };
         self.add_barriers(
             (it.id.as_ref(), "box"),
             it.particles.as_deref(),

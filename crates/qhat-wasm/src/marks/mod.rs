@@ -130,6 +130,7 @@ fn add(constraint: &Constraint, system: &System, state: &State, t: f64, marks: &
         Constraint::OnCurve(on) => {
             push_once(Mark::new("wire", []).at(on.curve.drawn(PIECES)), marks);
         }
+        _ => (),
     }
 }
 
@@ -149,10 +150,10 @@ fn add_barrier(barrier: &Obstacle, marks: &mut Vec<Mark>) {
             let unit = normal.map(|n| n / size);
             Mark::new("ground", []).at([unit.map(|n| n * offset), unit])
         }
-        Surface::Ball { centre, radius, inside } => {
-            Mark::new(if inside { "bowl" } else { "ball" }, []).at([centre]).sized(radius)
+        Surface::Ball { center, radius, inside } => {
+            Mark::new(if inside { "bowl" } else { "ball" }, []).at([center]).sized(radius)
         }
-        Surface::Box { centre, half } => Mark::new("box", []).at([centre, half]),
+        Surface::Box { center, half } => Mark::new("box", []).at([center, half]),
     };
     push_once(mark, marks);
 }

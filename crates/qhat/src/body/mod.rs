@@ -190,7 +190,7 @@ impl Body {
     }
 
     /// c [m].
-    pub fn centre(&self) -> [f64; 3] {
+    pub fn center(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (&point, &mass) in self.points.iter().zip(&self.masses) {
             add(&mut sum, ParticleId(0), scaled(mass, point));
@@ -200,7 +200,7 @@ impl Body {
 
     /// v_i = v + ω × (x_i − c) [m/s], where c moves with v [m/s] and the body turns with ω [rad/s].
     pub fn velocities(&self, v: [f64; 3], omega: [f64; 3]) -> Vec<[f64; 3]> {
-        let c = self.centre();
+        let c = self.center();
         let turning = self.points.iter().map(|&x| cross(omega, minus(x, c)));
         turning.map(|turning| std::array::from_fn(|k| v[k] + turning[k])).collect()
     }

@@ -33,8 +33,10 @@ fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
             let is_held = i == 0 && k % 3 == 0;
             let id = builder.particle(if is_held { particle.fixed() } else { particle.with_velocity(velocity) });
             if k % 4 == 3 && i == links {
-                builder
-                    .constraint(format!("nail {k}"), Nail::new(id, std::array::from_fn(|c| *x.get(c).unwrap_or(&0.0))));
+                builder.constraint(
+                    format!("nail {k}"),
+                    Nail::new(id, std::array::from_fn::<_, 3, _>(|c| *x.get(c).unwrap_or(&0.0))),
+                );
             }
             let step: Vec<f64> = (0..d).map(|c| 0.5 * numbers.next() + if c == 0 { 0.7 } else { 0.0 }).collect();
             if let Some(before) = before {

@@ -33,8 +33,9 @@
 //! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
-use super::{ConstraintError, Formulation, Holds, RowWriter, Softness};
+use super::{ConstraintError, Formulation, Holds, OnSphere, RowWriter, Softness};
 use crate::allowed::{check_strength, not_negative, positive};
+use crate::driven::Driven;
 use crate::force::{Force, Spring};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
@@ -74,6 +75,20 @@ impl Distance {
     /// A rod of the given length [m] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
+    }
+
+    /// A rod whose length is driven [m]: an [`OnSphere`] about the particle `b`, which has the length as a number or a
+    /// function of t. It is no link, so it has no tension of its own; its reaction is minus the tension.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Distance, Driven, Particle, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let [wall, load] = [0.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0])));
+    /// let winch = builder.constraint("winch", Distance::driven(load, wall, Driven::text("2 - t/10")?));
+    /// # Ok::<(), qhat::ExpressionError>(())
+    /// ```
+    pub fn driven(a: ParticleId, b: ParticleId, length: impl Into<Driven>) -> OnSphere {
+        OnSphere::new(a, b, length)
     }
 
     /// The same with the tension or thrust that it does not survive [N].

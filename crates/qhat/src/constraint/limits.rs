@@ -49,6 +49,16 @@ impl Limits {
         Limits { a, b, shortest: Some(shortest), longest: Some(longest), restitution: 0.0, breaks_at: None }
     }
 
+    /// The same with the part of the closing speed that comes back where a limit is hit [1].
+    pub fn with_restitution(self, restitution: f64) -> Self {
+        Limits { restitution, ..self }
+    }
+
+    /// The same with the tension or thrust that it does not survive [N].
+    pub fn breaking_at(self, tension: f64) -> Self {
+        Limits { breaks_at: Some(tension), ..self }
+    }
+
     /// The limits with the sign of |d| in C: the longest first.
     fn rows(&self) -> impl Iterator<Item = (f64, f64)> {
         [(-1.0, self.longest), (1.0, self.shortest)].into_iter().filter_map(|(sign, limit)| Some((sign, limit?)))
@@ -58,6 +68,30 @@ impl Limits {
     pub(crate) fn tension(&self, lambda: &[f64]) -> f64 {
         // The sum starts at +0 and adds: while slack it is 0 and not −0.
         self.rows().zip(lambda).fold(0.0, |pull, ((sign, _), lambda)| pull - sign * lambda)
+    }
+}
+
+/// A rope, by its word in scenes: [`Limits`] with a longest length.
+#[derive(Clone, Copy, Debug)]
+pub enum Rope {}
+
+impl Rope {
+    /// A rope: slack up to its length [m], and then it does not stretch. The same as [`Limits::rope`].
+    #[expect(clippy::new_ret_no_self, reason = "a rope is one form of limits")]
+    pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
+        Limits::rope(a, b, length)
+    }
+}
+
+/// A strut, by its word in scenes: [`Limits`] with a shortest length.
+#[derive(Clone, Copy, Debug)]
+pub enum Strut {}
+
+impl Strut {
+    /// A strut that keeps two particles at least so far apart [m]. The same as [`Limits::strut`].
+    #[expect(clippy::new_ret_no_self, reason = "a strut is one form of limits")]
+    pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
+        Limits::strut(a, b, length)
     }
 }
 

@@ -52,7 +52,7 @@ pub use kind::Formulation;
 pub(crate) use kind::{ContactRows, Holds, Softness};
 pub(crate) use layout::Layout;
 pub use lengths::Lengths;
-pub use limits::Limits;
+pub use limits::{Limits, Rope, Strut};
 pub use link::Link;
 pub use nail::{Nail, NailForm};
 pub use named::NamedConstraint;
@@ -75,11 +75,22 @@ macro_rules! constraints {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
         /// Any constraint; one variant a kind.
         #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Constraint { $($(#[$doc])* $kind($kind),)* }
 
         $(impl From<$kind> for Constraint {
             fn from(constraint: $kind) -> Self { Constraint::$kind(constraint) }
         })*
+
+        impl Constraint {
+            /// The names of all kinds: those of the variants.
+            pub const KINDS: &'static [&'static str] = &[$(stringify!($kind)),*];
+
+            /// The name of its kind, one of [`Constraint::KINDS`].
+            pub fn kind(&self) -> &'static str {
+                match self { $(Constraint::$kind(_) => stringify!($kind),)* }
+            }
+        }
 
         impl Holds for Constraint {
             fn row_count(&self, dimension: usize) -> usize {

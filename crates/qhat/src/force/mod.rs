@@ -49,11 +49,22 @@ macro_rules! forces {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
         /// Any force; one variant a kind.
         #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Force { $($(#[$doc])* $kind($kind),)* }
 
         $(impl From<$kind> for Force {
             fn from(force: $kind) -> Self { Force::$kind(force) }
         })*
+
+        impl Force {
+            /// The names of all kinds: those of the variants.
+            pub const KINDS: &'static [&'static str] = &[$(stringify!($kind)),*];
+
+            /// The name of its kind, one of [`Force::KINDS`].
+            pub fn kind(&self) -> &'static str {
+                match self { $(Force::$kind(_) => stringify!($kind),)* }
+            }
+        }
 
         impl Acts for Force {
             fn add<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64], Q: &mut [f64]) {

@@ -8,6 +8,7 @@ use super::ordering::minimum_degree;
 
 /// How the unknowns of a component hang together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ComponentKind {
     /// One after the other: a chain.
     Path,
@@ -19,6 +20,7 @@ pub enum ComponentKind {
 
 /// How a component is factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FactorMethod {
     /// The whole matrix as a dense one, in the order given.
     Dense,
