@@ -1,4 +1,4 @@
-# What people and CI call. `make` alone lists it. scripts/setup installs what is missing, so nothing is run by hand before.
+# The commands of people and CI. `make` alone lists them. scripts/setup installs the tools that are missing.
 
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
@@ -7,7 +7,7 @@ MAKEFLAGS += --no-builtin-rules --no-print-directory
 # thing at a time, and a -j given to it is kept from cargo, which would look for make's job tokens in vain.
 .NOTPARALLEL:
 unexport MAKEFLAGS MFLAGS
-.PHONY: help play build page test tests check lint docs bench clean FORCE
+.PHONY: help play build page test tests check format lint docs fuzz bench clean FORCE
 
 # The command is always compiled with its page, so that no target undoes the work of another.
 WORKSPACE := --workspace --features qhat-cli/page
@@ -28,12 +28,14 @@ build: page ## the qhat command with the page inside, in target/release/qhat
 page: $(PAGE) ## the page alone, in playground/dist
 
 # Folders stand in the list beside their files, so that a removed file counts as a change.
-$(PAGE): $(WASM) $(shell find playground/src playground/public scenes -path playground/src/wasm -prune -o -print 2>/dev/null) \
+PAGE_SOURCES = $(shell find playground/src playground/public scenes \
+	-path playground/src/wasm -prune -o -print 2>/dev/null)
+$(PAGE): $(WASM) $(PAGE_SOURCES) \
 		$(wildcard playground/*.json playground/*.ts playground/*.html)
 	@echo "Building the page"
 	@npm --prefix playground run --silent build
 
-# Asked every time, because cargo knows best what changed; the script leaves the file alone when its content is the same.
+# The script runs every time, because cargo knows which sources changed. It leaves the file alone if its content stays.
 $(WASM): FORCE
 	@scripts/setup wasm page
 	@echo "Building the engine for the browser"
@@ -54,10 +56,12 @@ tests:
 	@echo "Testing the page"
 	@npm --prefix playground run --silent test
 
-check: lint ## the quick loop while writing: formatting, lints, types, fast tests
-	@echo "Running the fast tests"
-	@cargo test --release --package qhat --package qhat-scene
-	@npm --prefix playground run --silent test:unit
+check: ## the loop while you write: format, lints and fast tests of the crates that differ from main (CRATES="qhat …")
+	@scripts/check $(CRATES)
+
+format: ## write everything in its format; a good pre-commit hook
+	@cargo fmt --all
+	@if [ -d playground/node_modules ]; then npm --prefix playground run --silent format; fi
 
 lint: page
 	@echo "Checking format, lints and types"
@@ -68,6 +72,11 @@ lint: page
 docs: ## the Rust documentation, in target/doc
 	@echo "Building the documentation"
 	@RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+
+fuzz: ## random heaps, expressions and scene files, TIMES=20 times as many as in a test run
+	@echo "Trying $(or $(TIMES),20) times as many random cases as a test run does"
+	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat --test all -- random_ long_heaps
+	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat-scene --test all -- hostile
 
 bench: ## cost beside length and energy error, here and in other engines, into benches/results (about half an hour)
 	@cargo build --release --quiet --package qhat-bench

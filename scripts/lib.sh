@@ -23,7 +23,8 @@ install_debian() {
     local log
     log=$(mktemp)
     # The lists may be old or absent; a broken third-party source must not stop us from using the others.
-    "${root[@]}" apt-get -q update >"$log" 2>&1 || say "apt-get update reported a problem; trying to install all the same"
+    "${root[@]}" apt-get -q update >"$log" 2>&1 ||
+        say "apt-get update reported a problem; trying to install all the same"
     if ! "${root[@]}" env DEBIAN_FRONTEND=noninteractive \
         apt-get -qy -o DPkg::Lock::Timeout=300 install --no-install-recommends "$@" >>"$log" 2>&1; then
         tail -n 20 "$log" >&2

@@ -1,17 +1,18 @@
-// The only file that knows the engine is WebAssembly. Everything else sees the class below and plain records.
+// The only file that imports WebAssembly. The rest of the page uses the class below and plain records.
 
 import start, {
   type Controls,
   default_frame_work,
   type Energy,
+  type Structure as EngineStructure,
   type InitOutput,
   type IntegratorFacts,
   integrators as integratorFacts,
-  type Mark,
+  type Link,
   type Projection,
+  type Shape,
   type Shipped,
   type StepReport,
-  type Structure,
   shipped_scenes,
   type Terms,
   Simulation as WasmSimulation,
@@ -24,18 +25,26 @@ export type {
   IntegratorFacts,
   IntegratorName,
   Link,
-  Mark,
-  MarkKind,
-  Nail,
   Projection,
+  Shape,
+  ShapeKind,
   Shipped,
-  Spring,
+  Source,
+  StepEvent,
   StepReport,
-  Structure,
   Terms,
 } from './wasm/qhat_wasm.js';
 
-/** What the engine says when it refuses; `kind` is the Rust error's type. */
+/** A shape with a tension: a rod, a rope or a strut. */
+export type LinkShape = Shape & { link: Link };
+
+/** The parts of a scene. Rows and names of rows change with the formulation, driven shapes with time. */
+export interface Structure extends EngineStructure {
+  /** the rods, ropes and struts among the shapes, in the order of `tension()` */
+  links: LinkShape[];
+}
+
+/** A refusal of the engine, in its words; `kind` is the type of the Rust error. */
 export class EngineError extends Error {
   constructor(
     readonly kind: string,
@@ -58,7 +67,7 @@ export function integrators(): IntegratorFacts[] {
   return integratorFacts();
 }
 
-/** Row solves a frame that auto may take where a scene does not say. */
+/** Row solves a frame that auto may take where a scene sets no limit. */
 export function defaultFrameWork(): number {
   return default_frame_work();
 }
@@ -67,7 +76,7 @@ export function shippedScenes(): Shipped[] {
   return shipped_scenes();
 }
 
-/** One running scene. The engine computes; this converts errors and frees the memory that JavaScript cannot see. */
+/** One running scene: converts errors, and frees the engine's memory, which JavaScript does not collect. */
 export class Simulation {
   private readonly inner: WasmSimulation;
 
@@ -78,14 +87,16 @@ export class Simulation {
     this.inner = attempt(() => new WasmSimulation(text, sourceName));
   }
 
-  /** What the scene is made of; rows change with the forms. */
   structure(): Structure {
-    return this.inner.structure();
+    const structure = this.inner.structure();
+    return { ...structure, links: structure.shapes.filter(isLink) };
   }
 
-  /** What holds the particles beside rods, nails and springs, as it is at a time in s. */
-  marks(time: number): Mark[] {
-    return this.inner.marks(time);
+  /** The shapes of the scene at a time in s; only driven ones are asked for again. */
+  shapesAt(shapes: Shape[], time: number): Shape[] {
+    if (!shapes.some(({ driven }) => driven)) return shapes;
+    const moved = this.inner.driven_shapes(time).values();
+    return shapes.map((shape) => (shape.driven ? (moved.next().value ?? shape) : shape));
   }
 
   get time(): number {
@@ -107,7 +118,7 @@ export class Simulation {
     return attempt(() => this.inner.tension());
   }
 
-  /** places of the links that are broken */
+  /** The places of the broken links. */
   broken(): Uint32Array {
     return this.inner.broken();
   }
@@ -120,7 +131,7 @@ export class Simulation {
     return attempt(() => this.inner.terms());
   }
 
-  /** What it took to make the start consistent. */
+  /** How far the start was moved to satisfy the constraints. */
   projection(): Projection {
     return this.inner.projection();
   }
@@ -142,7 +153,7 @@ export class Simulation {
     attempt(() => this.inner.set_controls(controls));
   }
 
-  /** Hangs a mouse spring on a particle; the engine scales its stiffness by the mass. */
+  /** Ties a particle to a target in m by a mouse spring; the engine scales its stiffness by the mass. */
   grab(particle: number, target: readonly number[]): void {
     attempt(() => this.inner.grab(particle, Float64Array.from(target)));
   }
@@ -158,6 +169,10 @@ export class Simulation {
   free(): void {
     this.inner.free();
   }
+}
+
+export function isLink(shape: Shape): shape is LinkShape {
+  return shape.link !== null;
 }
 
 function attempt<T>(call: () => T): T {

@@ -1,15 +1,14 @@
-// window.qhat: the page's public handle, for a curious person's console and for the page's own tests. Everything it
-// gives is a copy; what it changes goes through the same doors as the buttons.
+// window.qhat: the page's public handle, for the console of a curious person and for the page's own tests. It gives
+// copies, and its methods do what the buttons do.
 //
-//   qhat.state()            time, positions, velocities, tension, max |C| of what is shown, and of the ghost
+//   qhat.state()            time, positions, velocities, tension, max |C| of the run and of the ghost
 //   qhat.terms()            every symbol of this state: J, A, λ, b, …
-//   qhat.controls()         what the controls are set to
+//   qhat.controls()         the values of the controls
 //   qhat.pause(); qhat.step(100); qhat.reset(); qhat.play()
 //   qhat.screen(3)          where particle 3 is on the canvas, px
 
 import type { Controls, StepReport, Structure, Terms } from './engine';
-import type { Session } from './session/session.svelte';
-import type { Stage } from './view/stage';
+import type { Page } from './page';
 
 export interface PageState {
   time: number;
@@ -23,7 +22,7 @@ export interface PageState {
 }
 
 export interface Handle {
-  /** true once there is a scene, or words why there is none */
+  /** true once there is a scene, or a message why there is none */
   readonly ready: boolean;
   state(): PageState;
   structure(): Structure | null;
@@ -42,17 +41,18 @@ declare global {
   }
 }
 
-export function installHandle(session: Session, stage: Stage): void {
+export function installHandle({ session, comparison, playback, stage }: Page): void {
   window.qhat = {
     get ready() {
       return session.phase !== 'starting';
     },
     state() {
-      const { run, ghost } = session;
+      const { run } = session;
+      const { ghost } = comparison;
       const simulation = run?.simulation;
       return {
         time: simulation?.time ?? 0,
-        running: session.running,
+        running: playback.running,
         positions: Array.from(simulation?.positions() ?? []),
         velocities: Array.from(simulation?.velocities() ?? []),
         tension: Array.from(simulation?.tension() ?? []),
@@ -68,12 +68,12 @@ export function installHandle(session: Session, stage: Stage): void {
     structure: () => session.structure,
     controls: () => session.controls,
     terms: () => session.run?.simulation.terms() ?? null,
-    play: () => session.play(),
-    pause: () => session.pause(),
+    play: () => playback.play(),
+    pause: () => playback.pause(),
     step(count = 1) {
-      for (let k = 0; k < count && !session.stopped; k += 1) session.stepOnce();
+      for (let k = 0; k < count && !playback.stopped; k += 1) playback.stepOnce();
     },
-    reset: () => session.reset(),
+    reset: () => playback.reset(),
     screen(particle) {
       const at = [0, 0, 0];
       stage.camera.project(stage.positionOf(particle), 0, at);

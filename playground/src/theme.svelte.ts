@@ -1,4 +1,6 @@
-// Light or dark: the system's choice until a person makes their own, which this browser then remembers.
+// Light or dark: the system's choice until a person makes a choice, which this browser then remembers.
+
+import { type Palette, readPalette } from './view/palette';
 
 const KEY = 'qhat-theme';
 
@@ -6,10 +8,13 @@ export class Theme {
   private readonly system = matchMedia('(prefers-color-scheme: dark)');
   private systemDark = $state(this.system.matches);
   private chosen = $state<'light' | 'dark' | null>(remembered());
+  /** the colours that canvas, plots and matrices draw with, read anew when the theme changes */
+  palette = $state.raw(this.show());
 
   constructor() {
     this.system.addEventListener('change', (event) => {
       this.systemDark = event.matches;
+      this.palette = this.show();
     });
   }
 
@@ -24,11 +29,13 @@ export class Theme {
     } catch {
       // a browser that keeps nothing still changes its colours now
     }
+    this.palette = this.show();
   }
 
-  /** Marks the document, for the style sheet. */
-  show(): void {
+  /** Names the theme on the document, for the style sheets, and reads their colours. */
+  private show(): Palette {
     document.documentElement.dataset.theme = this.dark ? 'dark' : 'light';
+    return readPalette();
   }
 }
 

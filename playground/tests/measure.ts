@@ -1,4 +1,4 @@
-// Frames a second and worst error of chains in Chromium: npm run measure. Prints numbers; decides nothing.
+// Frames a second and worst error of chains in Chromium: npm run measure. Prints numbers and never fails.
 
 import { it } from 'vitest';
 import { laboratory } from './browser/page';

@@ -119,7 +119,8 @@ inline int peer_main(int count, char** words, const std::function<Frame(const Wo
         best = std::min(best, cpu);
     }
     std::ofstream(words[3], std::ios::binary)
-        .write(reinterpret_cast<const char*>(written.data()), static_cast<std::streamsize>(written.size() * sizeof(double)));
+        .write(reinterpret_cast<const char*>(written.data()),
+               static_cast<std::streamsize>(written.size() * sizeof(double)));
     std::printf("%.9f %s\n", best, ended.c_str());
     return 0;
 }

@@ -23,7 +23,8 @@ template <int D>
 class Rattle {
 public:
     Rattle(const Workload& workload, int substeps)
-        : workload_(workload), substeps_(substeps), h_(workload.frame / substeps), C_(workload.rods()), along_(workload.rods()) {
+        : workload_(workload), substeps_(substeps), h_(workload.frame / substeps), C_(workload.rods()),
+          along_(workload.rods()) {
         structure();
         gradient(Eigen::Map<const Vector>(workload.positions.data(), workload.positions.size()));
         solver_.analyzePattern(A_);

@@ -80,7 +80,10 @@ class Recorder:
 
 
 def by_frames(step: Callable[[], None], read: Read) -> Simulate:
-    """A motion of an engine that can be stopped at every frame: `step` advances by one, `read` tells (n, d) numbers each."""
+    """A motion of an engine that can be stopped at every frame.
+
+    `step` advances by one frame; `read` returns positions and velocities, (n, d) numbers each.
+    """
 
     def simulate(recorder: Recorder) -> None:
         step()

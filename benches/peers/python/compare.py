@@ -55,7 +55,8 @@ def engines() -> list[Engine]:
     manifest = (PYTHON.parent / "rapier/Cargo.toml").read_text()
     rapier = re.search(r'rapier2d-f64 = "=(.*)"', manifest)[1]
     macros = Path("/usr/include/eigen3/Eigen/src/Core/util/Macros.h").read_text()
-    eigen = ".".join(re.search(rf"define EIGEN_{part}_VERSION (\d+)", macros)[1] for part in ("WORLD", "MAJOR", "MINOR"))
+    parts = ("WORLD", "MAJOR", "MINOR")
+    eigen = ".".join(re.search(rf"define EIGEN_{part}_VERSION (\d+)", macros)[1] for part in parts)
 
     def python(file: str) -> list[str]:
         return [sys.executable, str(PYTHON / f"{file}.py")]
@@ -165,13 +166,15 @@ def row(engine: Engine, workload: str, setting: str, folder: Path) -> dict[str, 
     if output.exists() and output.stat().st_size > 0:
         frames, worst, rms, energy, energy_max = said([QHAT, "measure", workload, output]).split()
     cost = cpu * 1e3 / (int(frames) / 60) if int(frames) else math.nan
-    values = [workload, engine.name, engine.version, setting, f"{cost:.4f}", frames, worst, rms, energy, energy_max, ended]
+    errors = [worst, rms, energy, energy_max]
+    values = [workload, engine.name, engine.version, setting, f"{cost:.4f}", frames, *errors, ended]
     return dict(zip(COLUMNS, values))
 
 
 def line(told: dict[str, object]) -> str:
     """A row to read while the rest runs."""
-    cost, worst, energy = (float(told[name]) for name in ("cpu_ms_per_simulated_s", "worst_length_error", "energy_error"))
+    columns = ("cpu_ms_per_simulated_s", "worst_length_error", "energy_error")
+    cost, worst, energy = (float(told[name]) for name in columns)
     what = f"{told['workload']:<10} {told['engine']:<17} {told['setting']:<42}"
     return f"{what} {cost:>12.3f} {worst:>8.0e} {energy:>8.0e}  {told['ended']}"
 
@@ -192,7 +195,8 @@ def rows(workloads: list[str]) -> Iterator[dict[str, object]]:
 
 def main() -> None:
     results, wanted = Path(sys.argv[2]), sys.argv[3:]
-    print(f"{'workload':<10} {'engine':<17} {'setting':<42} {'CPU ms/sim s':>12} {'worst':>8} {'energy':>8}", flush=True)
+    errors = f"{'worst':>8} {'energy':>8}"
+    print(f"{'workload':<10} {'engine':<17} {'setting':<42} {'CPU ms/sim s':>12} {errors}", flush=True)
     if wanted:
         for told in rows(wanted):
             print(line(told), flush=True)

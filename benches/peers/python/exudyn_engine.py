@@ -9,7 +9,14 @@ from collections.abc import Callable
 import exudyn as exu
 import numpy as np
 from adapter import Recorder, Simulate, Workload, main
-from exudyn.itemInterface import Force, MarkerNodePosition, MassPoint, NodePoint, ObjectConnectorDistance, NodePointGround
+from exudyn.itemInterface import (
+    Force,
+    MarkerNodePosition,
+    MassPoint,
+    NodePoint,
+    NodePointGround,
+    ObjectConnectorDistance,
+)
 
 
 def begin(workload: Workload, setting: dict[str, str]) -> Simulate:

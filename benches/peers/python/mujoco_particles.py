@@ -20,7 +20,8 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_AUTORESET
     starts = workload.in_space(workload.positions)
     for i, (start, mass, fixed) in enumerate(zip(starts, workload.masses, workload.fixed)):
-        body = spec.worldbody.add_body(name=f"p{i}", pos=start, mass=mass, inertia=[mass * 1e-6] * 3, explicitinertial=True)
+        inertia = [mass * 1e-6] * 3
+        body = spec.worldbody.add_body(name=f"p{i}", pos=start, mass=mass, inertia=inertia, explicitinertial=True)
         body.add_site(name=f"s{i}")
         for axis in np.eye(3)[: 0 if fixed else workload.dimension]:
             body.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)

@@ -2,7 +2,8 @@
 
     plot.py PEERS.csv PICTURE.svg
 
-Hollow marks: the energy at the end is off by more than ENERGY of the largest kinetic energy. Runs that ended early are left out.
+Hollow marks: the energy at the end is off by more than ENERGY of the largest kinetic energy. Runs that ended early are
+left out.
 """
 
 import csv
@@ -50,7 +51,8 @@ def lines(rows: list[dict[str, str]], workload: str, engine: str) -> list[list[P
     found: dict[str, list[Point]] = {}
     for row in rows:
         name = row["engine"]
-        if row["workload"] == workload and not row["ended"] and engine == ("qhat" if name.startswith("qhat ") else name):
+        wanted = "qhat" if name.startswith("qhat ") else name
+        if row["workload"] == workload and not row["ended"] and engine == wanted:
             error = max(float(row["worst_length_error"]), FLOOR)
             good = abs(float(row["energy_error"])) <= ENERGY
             found.setdefault(name, []).append((float(row["cpu_ms_per_simulated_s"]), error, good))

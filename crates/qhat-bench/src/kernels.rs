@@ -1,5 +1,5 @@
-//! Six small pieces of work whose instructions callgrind counts: the count hardly moves with what else the machine does, so
-//! a change of a few in a hundred shows, where a time would not.
+//! Six small pieces of work whose instructions callgrind counts: the count hardly moves with what else the machine
+//! does, so a change of a few in a hundred shows, where a time would not.
 
 use crate::setting::Setting;
 use crate::workload::Workload;
@@ -75,8 +75,8 @@ pub fn run_one(name: &str) -> bool {
     true
 }
 
-/// Counts the instructions of every kernel and prints them beside those kept in the file; `keep` writes the file anew. Where
-/// there is no valgrind that is said, and nothing is compared.
+/// Counts the instructions of every kernel and prints them beside those kept in the file; `keep` writes the file anew.
+/// Where there is no valgrind that is said, and nothing is compared.
 ///
 /// # Errors
 /// A file that cannot be read or written, a count that callgrind does not give.

@@ -1,7 +1,7 @@
 //! The parts of `make bench` that are qhat's own; docs/benchmarks.md says what is measured and how to read it.
 
 use qhat_bench::trajectory::{Writer, measure};
-use qhat_bench::{NAMES, Row, Setting, Workload, best, kernels, quickest, run, scenes, settings};
+use qhat_bench::{Row, Series, Setting, Workload, kernels, quickest, run, scenes, settings};
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
@@ -65,22 +65,20 @@ fn command() -> Result<(), Box<dyn Error>> {
 fn workloads(wanted: &[&str], file: &Path) -> Result<(), Box<dyn Error>> {
     let mut csv = format!("{}\n", Row::CSV);
     println!("{}", Row::heading());
-    for name in if wanted.is_empty() { &NAMES } else { wanted } {
-        let workload: Workload = name.parse()?;
-        for setting in settings(&workload) {
-            let row = Row::new(&workload, setting, best(&workload, &setting, LIMIT)?);
-            println!("{row}");
-            csv += &row.csv();
-            csv += "\n";
-        }
-    }
+    Series::new(wanted, None, LIMIT)?.run(|row| {
+        println!("{row}");
+        csv += &row.csv();
+        csv += "\n";
+        Ok::<(), Box<dyn Error>>(())
+    })?;
     if wanted.is_empty() {
         fs::write(file, csv)?;
     }
     Ok(())
 }
 
-/// One run, told as every other engine tells it: the trajectory in a file, CPU seconds and why it ended early on a line.
+/// One run, told as every other engine tells it: the trajectory in a file, CPU seconds and why it ended early on a
+/// line.
 fn trajectory(workload: &Workload, setting: &Setting, limit: Duration, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut written = Writer::create(file)?;
     let mut failed = Ok(());

@@ -31,8 +31,8 @@ impl Outcome {
     }
 }
 
-/// Simulates a workload until its end, or until a frame ends after `limit` of CPU time. `each` sees positions and velocities
-/// at the end of every frame; its time is not counted.
+/// Simulates a workload until its end, or until a frame ends after `limit` of CPU time. `each` sees positions and
+/// velocities at the end of every frame; its time is not counted.
 ///
 /// # Errors
 /// Settings out of range, or a start that cannot be made consistent. A step that fails ends the run and is told in

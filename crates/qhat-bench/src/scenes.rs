@@ -29,7 +29,8 @@ struct Outcome {
 /// A scene that fails, a file that cannot be written.
 pub fn scenes(wanted: &[String], results: &Path) -> Result<(), Box<dyn Error>> {
     let mut csv = String::from(
-        "scene,integrator,rows,simulated_s,cpu_ms_per_simulated_s,us_per_substep,substeps,max_relative_length_error,energy_error,energy_error_max\n",
+        "scene,integrator,rows,simulated_s,cpu_ms_per_simulated_s,us_per_substep,substeps,\
+         max_relative_length_error,energy_error,energy_error_max\n",
     );
     println!(
         "{:<18} {:>17} {:>6} {:>12} {:>12} {:>9} {:>13} {:>13}",

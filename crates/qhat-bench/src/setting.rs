@@ -25,8 +25,8 @@ pub struct Setting {
     pub tolerance: f64,
 }
 
-/// All that a workload is measured at, in the order of [`SETTINGS`]; a large one at the default tolerance alone, since its
-/// cost a step is what is asked for.
+/// All that a workload is measured at, in the order of [`SETTINGS`]; a large one at the default tolerance alone, since
+/// its cost a step is what is asked for.
 pub fn settings(workload: &Workload) -> Vec<Setting> {
     let each = |(integrator, tolerances): (Integrator, &'static [f64])| {
         tolerances.iter().map(move |&tolerance| Setting { integrator, tolerance })

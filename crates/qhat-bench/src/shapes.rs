@@ -77,8 +77,8 @@ pub fn heavy(ratio: f64) -> Workload {
 }
 
 /// n × n particles joined along rows and columns, two corners pinned: a planar net that hangs, or in 3D a cloth that is
-/// released from the horizontal. The row between the pins is a quarter of a circle: were it straight, the rods between two
-/// pins would depend on each other at the start.
+/// released from the horizontal. The row between the pins is a quarter of a circle: were it straight, the rods between
+/// two pins would depend on each other at the start.
 pub fn net(n: usize, dimension: usize) -> Workload {
     let mut workload = Workload::new(dimension);
     let turn = FRAC_PI_2 / (n - 1) as f64;
@@ -105,8 +105,8 @@ pub fn net(n: usize, dimension: usize) -> Workload {
     workload.timed()
 }
 
-/// A Warren truss of equilateral panels that swings from its first joint: as many rods as hold it, so every force in it is
-/// determined. The redundant one has a brace more, in the middle.
+/// A Warren truss of equilateral panels that swings from its first joint: as many rods as hold it, so every force in it
+/// is determined. The redundant one has a brace more, in the middle.
 pub fn truss(panels: usize, redundant: bool) -> Workload {
     let mut workload = Workload::new(2);
     let height = -LENGTH * 0.75_f64.sqrt();
@@ -132,7 +132,8 @@ pub fn truss(panels: usize, redundant: bool) -> Workload {
     workload.timed()
 }
 
-/// A crank of 0.01 m, a coupler of 0.03 m and a rocker of 0.025 m on a ground link of 0.03 m: the crank turns all the way.
+/// A crank of 0.01 m, a coupler of 0.03 m and a rocker of 0.025 m on a ground link of 0.03 m: the crank turns all the
+/// way.
 pub fn four_bar() -> Workload {
     const CRANK: f64 = 0.01;
     const COUPLER: f64 = 0.03;

@@ -47,7 +47,8 @@ impl Row {
         let Outcome { simulated, substeps, factorizations, errors, ended, .. } = &self.outcome;
         let Setting { integrator, tolerance } = self.setting;
         format!(
-            "{},{integrator},{tolerance:e},{},{simulated:.6},{:.4},{:.3},{:.1},{substeps},{factorizations},{:e},{:e},{:e},{:e},\"{}\"",
+            "{},{integrator},{tolerance:e},{},{simulated:.6},{:.4},{:.3},{:.1},{substeps},\
+             {factorizations},{:e},{:e},{:e},{:e},\"{}\"",
             self.workload,
             self.rows,
             self.outcome.cost(),

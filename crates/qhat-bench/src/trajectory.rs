@@ -1,5 +1,5 @@
-//! The file an engine leaves behind: for every frame the positions \[m\] and then the velocities \[m/s\] of all particles, d·n
-//! numbers each, as little-endian f64 and nothing else.
+//! The file an engine leaves behind: for every frame the positions \[m\] and then the velocities \[m/s\] of all
+//! particles, d·n numbers each, as little-endian f64 and nothing else.
 
 use crate::errors::Errors;
 use crate::workload::Workload;

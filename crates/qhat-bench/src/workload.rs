@@ -1,39 +1,10 @@
 //! A workload in neutral form: what every engine is given, and nothing that belongs to one.
 
-use crate::shapes;
 use qhat::{Dimension, Distance, Gravity, Particle, State, System};
 use serde::Serialize;
-use std::str::FromStr;
-use thiserror::Error;
 
 /// Standard gravity as the workloads have it, downwards in y \[m/s²\].
 pub(crate) const GRAVITY: f64 = 9.81;
-
-/// The workloads that `qhat bench` runs when none is named, by family and growing size.
-pub const NAMES: [&str; 22] = [
-    "chain10",
-    "chain100",
-    "chain1000",
-    "chain1e4",
-    "chain1e5",
-    "chain1e6",
-    "heavy100",
-    "heavy1000",
-    "net32",
-    "net100",
-    "net316",
-    "cloth32",
-    "cloth100",
-    "cloth316",
-    "truss20",
-    "truss20r",
-    "truss200",
-    "truss200r",
-    "four-bar",
-    "star1000",
-    "many20",
-    "many10000",
-];
 
 /// Particles, rods and gravity, and how long to look.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -58,50 +29,6 @@ pub struct Workload {
     pub ends: Vec<usize>,
     /// The length of each rod \[m\].
     pub lengths: Vec<f64>,
-}
-
-/// A name that is no workload's.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("there is no workload `{name}`; use chainN, heavyR, netN, clothN, trussK, trussKr, four-bar, starN or manyN, as in {}",
-    NAMES.join(", "))]
-pub struct UnknownWorkload {
-    /// What was asked for.
-    pub name: String,
-}
-
-impl FromStr for Workload {
-    type Err = UnknownWorkload;
-
-    /// Makes a workload from its name: a family and, for all but the four-bar linkage, a size (`chain100`, `chain1e5`).
-    fn from_str(name: &str) -> Result<Self, UnknownWorkload> {
-        let made = match name.split_once(|c: char| c.is_ascii_digit()) {
-            None if name == "four-bar" => Some(shapes::four_bar()),
-            None => None,
-            Some((family, _)) => sized(family, &name[family.len()..]),
-        };
-        let workload = made.ok_or_else(|| UnknownWorkload { name: name.to_owned() })?;
-        Ok(Workload { name: name.to_owned(), ..workload })
-    }
-}
-
-fn sized(family: &str, size: &str) -> Option<Workload> {
-    let (digits, redundant) = match size.strip_suffix('r') {
-        Some(digits) if family == "truss" => (digits, true),
-        _ => (size, false),
-    };
-    // Sizes are counted, but 1e6 is easier to read than 1000000.
-    let size = digits.parse().ok().filter(|&size: &f64| (1.0..=1e7).contains(&size) && size.fract() == 0.0)?;
-    let count = size as usize;
-    match family {
-        "chain" => Some(shapes::chain(count)),
-        "heavy" => Some(shapes::heavy(size)),
-        "net" if count > 1 => Some(shapes::net(count, 2)),
-        "cloth" if count > 1 => Some(shapes::net(count, 3)),
-        "truss" if count > 2 => Some(shapes::truss(count, redundant)),
-        "star" => Some(shapes::star(count)),
-        "many" => Some(shapes::many(count)),
-        _ => None,
-    }
 }
 
 impl Workload {

@@ -61,7 +61,8 @@ fn settings_read_back_as_they_are_written() {
     }
 }
 
-/// A rod of 0.01 m stretched by a tenth, its particle of 0.01 kg let down by h = 0.002 m at v: by hand, from the definitions.
+/// A rod of 0.01 m stretched by a tenth, its particle of 0.01 kg let down by h = 0.002 m at v: by hand, from the
+/// definitions.
 #[test]
 fn errors_are_those_of_the_definitions() {
     let pendulum = workload("chain1");

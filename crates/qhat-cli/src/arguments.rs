@@ -1,17 +1,18 @@
-//! The words of the command line.
+//! The commands, arguments and options of the command line.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueHint};
-use qhat::Integrator;
+use qhat_scene::integrator_names;
+use qhat_shapes::Options;
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
-  1  the motion diverged, or the constraints cannot all hold; what was reached is written and marked
+  1  the motion diverged, or the constraints cannot all hold; the frames reached are written, the output is marked
   2  bad input; nothing is written
-  130  interrupted with Ctrl-C; what was reached is written and marked";
+  130  interrupted with Ctrl-C; the frames reached are written, the output is marked";
 
-/// Particles held together by exact constraints, and the tension in every rod and rope.
+/// Exact dynamics of particles and constraints, with the tension in every rod and rope.
 #[derive(Debug, Parser)]
 #[command(name = "qhat", version, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
@@ -23,19 +24,21 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Simulate a scene; write its trajectory and a summary
     Run(Run),
-    /// Say what is wrong with a scene, or its degrees of freedom and rank
+    /// Draw a still of a scene, of any time of its run, or of a frame of a trajectory
+    Render(Render),
+    /// Report the errors of a scene, or its degrees of freedom and rank
     Check(Check),
-    /// Open a scene in the browser, to play with
+    /// Open a scene in the browser
     Play(Play),
-    /// List the scenes that come with qhat, or print one to start from
+    /// List the scenes that come with qhat, or print one of them
     Scenes(Scenes),
-    /// Measure what known workloads cost on this machine, beside what they get wrong
+    /// Measure the cost and the errors of known workloads on this machine
     Bench(Bench),
     /// Print the JSON Schema of scene files
     Schema,
     /// Print a completion script for a shell
     Completions {
-        /// The shell that will read it
+        /// The shell that reads the script
         shell: clap_complete::Shell,
     },
 }
@@ -46,37 +49,91 @@ pub(crate) struct Run {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
 
-    /// Write the trajectory to this file; its ending says how: .npz (NumPy) or .csv
+    /// Write the trajectory to this file, whose ending gives the format: .npz (NumPy) or .csv
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
 
-    /// Write over an output that exists
+    /// Replace an output that exists
     #[arg(long, requires = "output")]
     pub(crate) force: bool,
 
-    /// How long to simulate [s], instead of what the scene says
+    /// The time to simulate [s], in place of the scene's duration
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 
-    /// Into how many frames to divide the duration; one more is written, the start [default: duration / h]
+    /// The number of frames in the duration; the start is written as one more [default: duration / h]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) frames: Option<usize>,
 
-    /// The step, or the frame of an integrator that chooses its own steps [s], instead of what the scene says
+    /// The step, or the frame of an integrator that chooses its own steps [s], in place of the scene's h
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) h: Option<f64>,
 
-    /// How to integrate, instead of what the scene says
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Integrator::ALL.map(Integrator::name)))]
+    /// The integrator, in place of the scene's
+    #[arg(long, value_name = "NAME", value_parser = integrator_parser())]
     pub(crate) integrator: Option<String>,
+
+    /// The relative error of a substep that adaptive integrators aim at, in place of the scene's
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
 
     /// Print the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// Show no progress, and print no summary unless it is asked for with --json
+    /// Show no progress bar, and print no summary without --json
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Render {
+    /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: String,
+
+    /// Write the picture to this file; its ending says how: .svg or .png
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+
+    /// Write over an output that exists
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Simulate to this time and draw what is there [s] [default: the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(crate) at: Option<f64>,
+
+    /// Draw a frame of this trajectory of the scene (.npz), as `qhat run -o` writes it, and simulate nothing
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "at")]
+    pub(crate) from: Option<PathBuf>,
+
+    /// Which frame of the trajectory, counted from 0 [default: the last]
+    #[arg(long, value_name = "K", requires = "from")]
+    pub(crate) frame: Option<u64>,
+
+    /// Width and height of the picture [px]
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size)]
+    pub(crate) size: [u32; 2],
+
+    /// Light strokes on a dark background
+    #[arg(long)]
+    pub(crate) dark: bool,
+
+    /// Show no progress
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Width and height, as in 1200x800.
+fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let (least, most) = (Options::LEAST, Options::MOST);
+    let sides = text.split_once(['x', '×']).ok_or("a size is written as in 1200x800")?;
+    let side = |text: &str| match text.parse() {
+        Ok(side) if (least..=most).contains(&side) => Ok(side),
+        _ => Err(format!("width and height are whole numbers from {least} to {most}, not `{text}`")),
+    };
+    Ok([side(sides.0)?, side(sides.1)?])
 }
 
 #[derive(Args, Debug)]
@@ -100,14 +157,14 @@ pub(crate) struct Play {
     #[arg(long, value_name = "PORT")]
     pub(crate) port: Option<u16>,
 
-    /// Print the address and leave the browser alone
+    /// Print the address and open no browser
     #[arg(long)]
     pub(crate) no_open: bool,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct Scenes {
-    /// Print the text of this scene, to start from
+    /// Print the text of this scene
     pub(crate) name: Option<String>,
 
     /// Print the list as JSON
@@ -117,19 +174,25 @@ pub(crate) struct Scenes {
 
 #[derive(Args, Debug)]
 pub(crate) struct Bench {
-    /// Workloads such as chain100, heavy1000, net32, cloth32, truss20, truss20r, four-bar, star1000, many20 [default: all]
+    /// Workloads such as chain100, heavy1000, net32, cloth32, truss20, truss20r, four-bar, star1000, many20
+    /// [default: all]
     #[arg(value_name = "WORKLOAD")]
     pub(crate) workloads: Vec<String>,
 
-    /// At this integrator and tolerance alone, as in dop853:1e-4 [default: several of each]
+    /// One integrator and tolerance, as in dop853:1e-4 [default: several of each]
     #[arg(long, value_name = "SETTING")]
     pub(crate) setting: Option<String>,
 
-    /// Write the numbers to this file too, which must not exist
+    /// Write the numbers to this file, too, which must not exist
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) csv: Option<PathBuf>,
 
-    /// CPU time after which a run is stopped at the end of its frame [s]
+    /// The CPU time after which a run stops at the end of its frame [s]
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub(crate) limit: f64,
+}
+
+/// Accepts the names of the integrators, and lists them in the help.
+fn integrator_parser() -> PossibleValuesParser {
+    PossibleValuesParser::new(integrator_names().map(|(name, _)| name))
 }

@@ -1,9 +1,9 @@
-//! `qhat bench`: what workloads of known shape cost on this machine, beside what they get wrong.
+//! `qhat bench`: the cost and the errors of workloads of known shape on this machine.
 
 use crate::arguments;
 use crate::failure::Failure;
 use crate::print;
-use qhat_bench::{NAMES, Row, Setting, Workload, best, settings};
+use qhat_bench::{Row, Series, Setting};
 use std::fs::File;
 use std::io::Write;
 use std::process::ExitCode;
@@ -12,27 +12,17 @@ use std::time::Duration;
 /// Runs the workloads named, or all.
 pub(crate) fn bench(arguments: &arguments::Bench) -> Result<ExitCode, Failure> {
     // All is read before anything is run or written.
-    let all = || NAMES.iter().map(ToString::to_string).collect();
-    let names: Vec<String> = if arguments.workloads.is_empty() { all() } else { arguments.workloads.clone() };
-    let known = names.iter().map(|name| name.parse::<Workload>().map(|_| name)).collect::<Result<Vec<_>, _>>();
-    let names = known.map_err(Failure::input)?;
-    let one = arguments.setting.as_deref().map(str::parse::<Setting>).transpose().map_err(Failure::input)?;
+    let setting = arguments.setting.as_deref().map(str::parse::<Setting>).transpose().map_err(Failure::input)?;
     let limit = Duration::try_from_secs_f64(arguments.limit)
         .map_err(|_| Failure::input(format!("--limit must be a time in seconds, but is {}", arguments.limit)))?;
+    let series = Series::new(&arguments.workloads, setting, limit)?;
     let mut csv = arguments.csv.as_deref().map(Csv::create).transpose()?;
 
     print::text(&Row::heading())?;
-    for name in names {
-        let workload: Workload = name.parse().map_err(Failure::input)?;
-        for setting in one.map_or_else(|| settings(&workload), |setting| vec![setting]) {
-            let outcome = best(&workload, &setting, limit).map_err(Failure::input)?;
-            let row = Row::new(&workload, setting, outcome);
-            print::text(&row.to_string())?;
-            if let Some(csv) = &mut csv {
-                csv.line(&row.csv())?;
-            }
-        }
-    }
+    series.run(|row| {
+        print::text(&row.to_string())?;
+        csv.as_mut().map_or(Ok(()), |csv| csv.line(&row.csv()))
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,15 +1,17 @@
-//! What ends the command early, with its exit code.
+//! A failure of the command: its message and its exit code.
 
-use crate::print;
+use qhat::StepError;
+use qhat_bench::UnknownWorkload;
+use qhat_scene::fitted;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The motion diverged, or the constraints cannot hold.
+/// Exit code: the motion diverged, or the constraints cannot hold.
 pub(crate) const NOT_REACHED: u8 = 1;
-/// The scene, an option or a file is at fault.
+/// Exit code: the scene, an option or a file is at fault.
 pub(crate) const BAD_INPUT: u8 = 2;
-/// Ended by Ctrl-C: 128 + SIGINT, as shells have it.
+/// Exit code: ended by Ctrl-C, 128 + SIGINT, by the convention of shells.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// A message for a person and an exit code for a script.
@@ -20,29 +22,41 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// Something the user can put right in a scene, an option or a file.
+    /// A mistake in a scene, an option or a file.
     pub(crate) fn input(message: impl Display) -> Self {
         Failure { message: format!("error: {message}"), code: BAD_INPUT }
     }
 
-    /// A message that already names its place and says "error", as those of scenes do.
+    /// A message that names its place already, as the errors of scenes do.
     pub(crate) fn formatted(message: impl Display) -> Self {
         Failure { message: message.to_string(), code: BAD_INPUT }
     }
 
-    /// A file or stream that cannot be read or written: `what` says which and what was tried.
+    /// An error of a file or stream. `what` names the file and the operation.
     pub(crate) fn io(what: impl Display, error: &io::Error) -> Self {
         Failure::input(format!("{what}: {error}"))
     }
 
-    /// Prints the message on stderr and hands back the exit code.
+    /// Prints the message on stderr and returns the exit code.
     pub(crate) fn report(self) -> ExitCode {
         warn(self.message.trim_end());
         ExitCode::from(self.code)
     }
 }
 
-/// Prints a line on stderr; a closed stderr is nobody's loss.
+impl From<StepError> for Failure {
+    fn from(error: StepError) -> Self {
+        Failure::input(error)
+    }
+}
+
+impl From<UnknownWorkload> for Failure {
+    fn from(error: UnknownWorkload) -> Self {
+        Failure::input(error)
+    }
+}
+
+/// Prints a line on stderr. A closed stderr is ignored.
 pub(crate) fn warn(line: impl Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", print::plain(&line.to_string()));
+    let _ = writeln!(io::stderr().lock(), "{}", fitted(&line.to_string()));
 }

@@ -1,17 +1,20 @@
-//! The `qhat` command: reads scenes, runs the engine, writes what came out. It computes no physics of its own.
+//! The `qhat` command: reads scenes, runs the engine, writes the results. It computes no physics of its own.
 //!
-//! Exit codes: 0 done, 1 the motion diverged or the constraints cannot hold (what was reached is written and marked),
-//! 2 bad input, 130 interrupted.
+//! Exit codes: 0 done, 1 the motion diverged or the constraints cannot hold (the frames reached are written, and the
+//! output is marked), 2 bad input, 130 interrupted.
 
 mod arguments;
 mod bench;
 mod check;
 mod failure;
+mod output;
 mod play;
 mod print;
+mod render;
 mod run;
 mod scenes;
 mod source;
+mod status;
 mod trajectory;
 
 use arguments::{Arguments, Command};
@@ -22,6 +25,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Render(arguments) => render::render(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Play(arguments) => play::play(&arguments),
         Command::Scenes(arguments) => scenes::scenes(&arguments),
@@ -33,7 +37,7 @@ fn main() -> ExitCode {
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<ExitCode, Failure> {
-    // Into memory first: the generator itself would panic on a closed pipe.
+    // The script goes into memory first, because the generator would panic on a closed pipe.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "qhat", &mut script);
     print::bytes(&script)?;

@@ -1,4 +1,4 @@
-//! Where a scene comes from: a file, the scenes inside the command, or stdin.
+//! The source of a scene: a file, a scene that comes with qhat, or stdin.
 
 use crate::failure::Failure;
 use qhat_scene::{Format, Scene, SceneErrors, Shipped, shipped};
@@ -7,22 +7,22 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Scenes have kilobytes, and the reader of scenes has a limit of its own; this one is for a stream without an end [bytes].
+/// The most bytes that are read, so that a stream without an end ends. The reader of scenes has a smaller limit.
 const LARGEST: u64 = 64 << 20;
 
-/// The bytes of a scene and what to call it.
+/// The bytes of a scene and its name.
 #[derive(Debug)]
 pub(crate) struct Source {
-    /// As messages show it: the path, `pendulum.toml` for a shipped scene, or `stdin`.
+    /// The name in messages: the path of a file, `pendulum.toml` for a scene that comes with qhat, or `stdin`.
     pub(crate) name: String,
     bytes: Vec<u8>,
     format: Format,
-    /// The file, where it is one.
+    /// The path of a file; none for the other sources.
     path: Option<PathBuf>,
 }
 
 impl Source {
-    /// Reads what the argument means: `-` is stdin, else a file of that name, else a shipped scene.
+    /// Reads the source that an argument names: stdin for `-`, else a file, else a scene that comes with qhat.
     pub(crate) fn read(argument: &str) -> Result<Self, Failure> {
         if argument == "-" {
             let bytes = bytes(io::stdin().lock(), "stdin")?;
@@ -33,7 +33,7 @@ impl Source {
         }
         match File::open(argument) {
             Ok(file) if file.metadata().is_ok_and(|metadata| metadata.is_dir()) => {
-                // A folder called `net` is no reason to hide the scene.
+                // A folder called `net` must not hide the scene of that name.
                 let folder = format!("`{argument}` is a folder, not a scene file");
                 Source::shipped(argument).map_err(|_| Failure::input(folder))
             }
@@ -57,25 +57,25 @@ impl Source {
         Ok(Source { name, bytes: scene.text.into(), format: Format::Toml, path: None })
     }
 
-    /// The bytes as they are now: of a file that may have been edited, read again.
+    /// The current bytes: a file is read again, because it may have been edited.
     #[cfg(feature = "page")]
     pub(crate) fn current_bytes(&self) -> Vec<u8> {
         let again = self.path.as_ref().and_then(|path| File::open(path).ok());
         again.and_then(|file| bytes(file, &self.name).ok()).unwrap_or_else(|| self.bytes.clone())
     }
 
-    /// The last part of the name.
+    /// The name without its folders.
     pub(crate) fn file_name(&self) -> String {
         let path = self.path.as_deref().unwrap_or(Path::new(&self.name));
         path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
     }
 
-    /// The scene, or all that is wrong with it.
+    /// The scene, or its errors.
     pub(crate) fn load(&self) -> Result<Scene, SceneErrors> {
         qhat_scene::load_bytes(&self.bytes, &self.name, self.format)
     }
 
-    /// A fingerprint of the text, so that numbers can be told to come from it.
+    /// A hash of the text, by which results can be matched with it.
     pub(crate) fn hash(&self) -> String {
         let digest = Sha256::digest(&self.bytes);
         let hex: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -83,12 +83,12 @@ impl Source {
     }
 }
 
-/// The shipped scene of a name.
+/// The scene of a name that comes with qhat.
 pub(crate) fn find_shipped(name: &str) -> Option<&'static Shipped> {
     shipped().iter().find(|scene| scene.name == name)
 }
 
-/// A line that names the shipped scenes.
+/// A line with the names of the scenes that come with qhat.
 pub(crate) fn available() -> String {
     let names: Vec<&str> = shipped().iter().map(|scene| scene.name).collect();
     format!("scenes that come with qhat: {}", names.join(", "))
@@ -99,7 +99,7 @@ fn bytes(from: impl Read, name: &str) -> Result<Vec<u8>, Failure> {
     let read = from.take(LARGEST + 1).read_to_end(&mut bytes);
     read.map_err(|error| Failure::io(format!("cannot read `{name}`"), &error))?;
     if bytes.len() as u64 > LARGEST {
-        return Err(Failure::input(format!("`{name}` is larger than {} MiB; no scene is", LARGEST >> 20)));
+        return Err(Failure::input(format!("`{name}` is larger than {} MiB, more than any scene", LARGEST >> 20)));
     }
     Ok(bytes)
 }

@@ -1,8 +1,6 @@
 //! `qhat bench`: the table, the file, what is refused.
 
-mod common;
-
-use common::Folder;
+use crate::common::Folder;
 
 #[test]
 fn a_workload_is_measured_under_one_setting() {

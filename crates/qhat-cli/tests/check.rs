@@ -1,8 +1,6 @@
 //! `qhat check`: degrees of freedom, rank, self-stress, and whether the start is consistent.
 
-mod common;
-
-use common::{Folder, INFEASIBLE, PENDULUM};
+use crate::common::{Folder, INFEASIBLE, PENDULUM};
 use serde_json::{Value, json};
 
 /// A scene of particles (x, y, fixed) and rods between them.

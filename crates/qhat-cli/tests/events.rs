@@ -1,8 +1,6 @@
 //! `qhat run` on scenes where something happens: what it says about impacts, slipping and what broke.
 
-mod common;
-
-use common::{Folder, Ran};
+use crate::common::{Folder, Ran};
 
 /// A pendulum let go level with its hook: its rod carries 3 m g sin of the angle fallen, and breaks at 2 m g.
 const BREAKS: &str = r#"

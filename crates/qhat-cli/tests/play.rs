@@ -1,16 +1,14 @@
 //! `qhat play`: the page, to this machine only.
 
-mod common;
-
 #[test]
 #[cfg(not(feature = "page"))]
 fn a_command_without_its_page_says_how_to_get_one() {
-    common::Folder::new().qhat(&["play", "--no-open"]).refused("`make play` builds one");
+    crate::common::Folder::new().qhat(&["play", "--no-open"]).refused("`make play` builds one");
 }
 
 #[cfg(feature = "page")]
 mod served {
-    use super::common::{Folder, PENDULUM, QHAT};
+    use crate::common::{Folder, PENDULUM, QHAT};
     use std::io::{BufRead, BufReader, Read, Write};
     use std::net::TcpStream;
     use std::process::{Child, Command, Stdio};

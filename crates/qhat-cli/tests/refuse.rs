@@ -1,8 +1,6 @@
 //! What the command refuses: always exit code 2, a message that says what to do, and every file as it was.
 
-mod common;
-
-use common::{Folder, PENDULUM};
+use crate::common::{Folder, PENDULUM, QHAT, Ran};
 
 #[test]
 fn an_output_that_exists_is_not_overwritten_without_force() {
@@ -79,6 +77,8 @@ fn numbers_out_of_range_are_refused() {
     run(&["--frames", "-1"]).refused("invalid value '-1' for '--frames <N>'");
     run(&["--duration", "1e300"]).refused("ask for fewer with --frames");
     run(&["--frames", "18446744073709551615"]).refused("ask for fewer with --frames");
+    run(&["--tolerance", "0"]).refused("tolerance must be");
+    run(&["--tolerance", "nan"]).refused("tolerance must be");
     run(&["--integrator", "magic"]).refused("possible values: euler");
     run(&["--force"]).refused("--output");
     folder.qhat(&[]).refused("Usage: qhat");
@@ -99,7 +99,7 @@ fn an_interrupted_run_keeps_and_marks_what_was_reached() {
     use std::process::{Command, Stdio};
 
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);
-    let mut command = Command::new(common::QHAT);
+    let mut command = Command::new(QHAT);
     command.current_dir(folder.root()).stdout(Stdio::null()).stderr(Stdio::piped());
     let child = command.args(["run", "bob.toml", "--duration", "1e5", "-o", "bob.csv"]).spawn().unwrap();
     // It listens for Ctrl-C before it opens files, so the first file says that it does.
@@ -108,7 +108,7 @@ fn an_interrupted_run_keeps_and_marks_what_was_reached() {
     }
     let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(interrupt.success());
-    let ran = common::Ran::new(child.wait_with_output().unwrap());
+    let ran = Ran::new(child.wait_with_output().unwrap());
     assert_eq!(ran.code, 130, "{ran:?}");
     assert!(folder.read("bob.csv.json").contains(r#""status":"interrupted""#));
     assert!(folder.read("bob.csv").lines().count() >= 2, "a header and the start");

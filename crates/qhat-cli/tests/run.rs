@@ -1,8 +1,6 @@
 //! `qhat run`: what it writes and what it says.
 
-mod common;
-
-use common::{Folder, INFEASIBLE, PENDULUM, npz};
+use crate::common::{Folder, INFEASIBLE, PENDULUM, npz};
 
 /// Sums of the same products in another order differ by a few roundings of numbers of this size.
 const ROUNDOFF: f64 = 1e-12;
@@ -152,6 +150,19 @@ fn summary_has_what_scripts_need() {
     for key in ["wall_seconds", "cpu_seconds", "energy_error", "energy_error_max"] {
         assert!(summary[key].is_f64(), "{key}");
     }
+}
+
+#[test]
+fn options_replace_the_settings_of_the_scene() {
+    let folder = Folder::with(&[("bob.toml", PENDULUM)]);
+    let run = |options: &[&str]| folder.qhat(&[&["run", "bob.toml", "--json"], options].concat()).well().json();
+    let substeps = |tolerance: &str| run(&["--tolerance", tolerance])["substeps"].as_u64().unwrap();
+    // DOP853 is of order 8, so that 1e-12 takes far more substeps of this swing than the largest tolerances do.
+    assert!(substeps("1e-12") > substeps("1e-2"), "{} substeps, {}", substeps("1e-12"), substeps("1e-2"));
+    let backward = run(&["--integrator", "backward-euler"]);
+    assert_eq!(backward["integrator"], "implicit");
+    let implicit = run(&["--integrator", "implicit"]);
+    assert_eq!(backward["energy_error"], implicit["energy_error"], "one integrator under two names");
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! Scenes, schema, completions, help; and every command in the guide.
 
-mod common;
-
-use common::{Folder, QHAT};
+use crate::common::{Folder, QHAT};
 use std::process::{Command, Stdio};
 
 #[test]
@@ -103,4 +101,41 @@ fn every_command_in_the_documents_runs() {
             );
         }
     }
+}
+
+/// Whether a line of a document is one of a command's output; `…` stands for what differs from run to run.
+#[cfg(unix)]
+fn is_said(shown: &str, said: &str) -> bool {
+    said.lines().any(|line| {
+        let mut rest = Some(line);
+        for (k, piece) in shown.split('…').enumerate() {
+            rest = match rest {
+                Some(rest) if k == 0 => rest.strip_prefix(piece),
+                Some(rest) => rest.split_once(piece).map(|(_, after)| after),
+                None => None,
+            };
+        }
+        rest.is_some_and(|rest| rest.is_empty() || shown.ends_with('…'))
+    })
+}
+
+#[test]
+#[cfg(unix)]
+fn output_in_the_readme_is_what_the_command_prints() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let folder = Folder::new();
+    let (mut said, mut shown) = (String::new(), 0);
+    for line in text.lines().map(|line| line.strip_prefix("    ").unwrap_or_default()) {
+        if let Some(arguments) = line.strip_prefix("target/release/qhat ") {
+            let arguments: Vec<&str> = arguments.split_whitespace().take_while(|word| *word != "#").collect();
+            said = if arguments[0] == "play" { String::new() } else { folder.qhat(&arguments).stdout };
+        } else if !line.is_empty() && !said.is_empty() {
+            shown += 1;
+            assert!(is_said(line, &said), "README shows this line:\n{line}\nand the command prints:\n{said}");
+        } else {
+            said.clear();
+        }
+    }
+    assert!(shown > 10, "the search for output found only {shown} lines");
 }

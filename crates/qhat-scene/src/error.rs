@@ -1,16 +1,16 @@
-//! What is wrong with a scene, and where.
+//! The errors of a scene, each with its place in the text.
 
 use std::fmt;
 use std::ops::Range;
 
-/// Everything that is wrong with a scene, in the order of the text.
+/// The errors of a scene, in the order of the text.
 ///
-/// Displayed as `file:line:column: message`, the line with the offending text underlined, and what to write instead.
+/// Each is displayed as `file:line:column: message`, the line with the mistake underlined, and what to write instead.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct SceneErrors {
     /// The errors; at least one.
     pub errors: Vec<SceneError>,
-    /// Whether reading stopped, after the first twenty, before everything was looked at.
+    /// Whether reading stopped before the end, after twenty errors.
     pub more: bool,
 }
 
@@ -26,22 +26,22 @@ impl fmt::Display for SceneErrors {
     }
 }
 
-/// One thing that is wrong with a scene.
+/// One error of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct SceneError {
-    /// The name of the text, as it was given to [`crate::load`].
+    /// The name of the text, as given to [`crate::load`].
     pub source_name: String,
-    /// Line, from 1.
+    /// The line, from 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// The column in characters, from 1.
     pub column: usize,
-    /// The offending bytes of the text; empty where something is missing altogether.
+    /// The bytes of the text that are at fault; empty where something is missing.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// The mistake, in one sentence.
     pub message: String,
-    /// The line, cut where it is long, and the offending text underlined.
+    /// The line, cut where it is long, with the mistake underlined.
     pub excerpt: String,
-    /// What to write instead.
+    /// The help: what to write instead.
     pub help: Option<String>,
 }
 

@@ -1,7 +1,7 @@
 //! Scene files of [`qhat`]: TOML for people, JSON for programs, one model for both.
 //!
-//! [`load`] turns a text into a [`Scene`] that can be simulated, or into [`SceneErrors`] that say in which line and column
-//! of the text something is wrong and what to write instead. No files are read here and none can be named by a scene.
+//! [`load`] turns a text into a [`Scene`], ready to simulate, or into [`SceneErrors`], each with its line and column,
+//! the mistake, and what to write instead. This crate reads no files, and a scene cannot name one.
 //!
 //! ```
 //! let text = r#"
@@ -28,20 +28,20 @@
 //! let mut simulation = qhat_scene::load(text, "pendulum.toml", qhat_scene::Format::Toml)?.simulation()?;
 //! simulation.step()?;
 //!
-//! let error = qhat_scene::load(&text.replace("at =", "ta ="), "pendulum.toml", qhat_scene::Format::Toml).unwrap_err();
+//! let text = text.replace("at =", "ta =");
+//! let error = qhat_scene::load(&text, "pendulum.toml", qhat_scene::Format::Toml).unwrap_err();
 //! assert_eq!(error.errors[1].message, "unknown key `ta` in this entry of `particles`");
 //! assert_eq!((error.errors[1].line, error.errors[1].column), (11, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Data flows one way: text → `tree` (values with their bytes) → `check` (against the schema) → `model` (the file as Rust
-//! types) → `build` (the engine's `System` and `State`). The types of `model` are the one list of keys: [`json_schema`] is
-//! made from them and `check` follows it.
+//! Data flows one way: text → `tree` (values with their places in the text) → `check` (against the schema) → `model`
+//! (the scene as Rust types) → `build` (the engine's `System` and `State`). The types of `model` are the only list of
+//! keys: [`json_schema`] is made from them, and `check` follows that schema.
 
 mod build;
 mod check;
 mod error;
-mod groups;
 mod load;
 mod model;
 mod report;
@@ -53,7 +53,8 @@ mod tree;
 
 pub use error::{SceneError, SceneErrors};
 pub use load::{Format, load, load_bytes};
-pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
+pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension, integrator_names};
+pub use report::fitted;
 pub use scene::Scene;
 pub use schema::json_schema;
 pub use shipped::{Shipped, shipped};

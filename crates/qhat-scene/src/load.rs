@@ -9,10 +9,11 @@ use crate::scene::Scene;
 use crate::schema::schema;
 use crate::tree::{json, toml};
 
-/// A hand-written scene has kilobytes; one with every particle of a large net spelt out has a few megabytes.
+/// The most bytes of a scene that are read. A hand-written scene has kilobytes; a scene that lists every particle of a
+/// large net has a few megabytes.
 const MOST_BYTES: usize = 16 << 20;
 
-/// What a text is written in.
+/// The format of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// TOML 1.0, for people.
@@ -22,17 +23,17 @@ pub enum Format {
 }
 
 impl Format {
-    /// JSON for a name that ends in `.json`, whatever its case; TOML for every other.
+    /// The format of a file by its name: JSON where the name ends in `.json`, in any case; TOML otherwise.
     pub fn from_path(name: &str) -> Format {
         let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
         if extension.eq_ignore_ascii_case("json") { Format::Json } else { Format::Toml }
     }
 }
 
-/// Reads a scene. `source_name` is what errors call the text.
+/// Reads a scene. Errors call the text `source_name`.
 ///
 /// # Errors
-/// Everything that is wrong with the text, as far as it can be told at once.
+/// All mistakes that can be found in one pass.
 pub fn load(text: &str, source_name: &str, format: Format) -> Result<Scene, SceneErrors> {
     let mut report = Report::new(source_name, text);
     let scene = read(text, format, &mut report);
@@ -45,12 +46,12 @@ pub fn load(text: &str, source_name: &str, format: Format) -> Result<Scene, Scen
 /// Reads a scene from the bytes of a file.
 ///
 /// # Errors
-/// Those of [`load`], and bytes that are not UTF-8.
+/// The errors of [`load`], and bytes that are not UTF-8.
 pub fn load_bytes(bytes: &[u8], source_name: &str, format: Format) -> Result<Scene, SceneErrors> {
     match std::str::from_utf8(bytes) {
         Ok(text) => load(text, source_name, format),
         Err(error) => {
-            // Only what comes before the first such byte is shown; the rest has no certain reading.
+            // The report gets the text before the first such byte, because the rest has no certain reading.
             let valid = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
             let mut report = Report::new(source_name, &valid);
             let message = format!("byte {} of the file is not UTF-8 text", error.valid_up_to());
@@ -63,10 +64,10 @@ pub fn load_bytes(bytes: &[u8], source_name: &str, format: Format) -> Result<Sce
 fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene>> {
     if text.len() > MOST_BYTES {
         let message = format!("the scene has {} bytes; at most {MOST_BYTES} are read", text.len());
-        report.error(0..0, message, Some("a `[[generate]]` block says the same in few lines".into()));
+        report.error(0..0, message, Some("a `[[generate]]` block makes many particles from few lines".into()));
         return None;
     }
-    // Some editors begin a file with a byte order mark. A blank of the same length keeps every place where it is.
+    // Some editors begin a file with a byte order mark. Blanks of the same length keep all places in the text.
     let unmarked = text.strip_prefix('\u{FEFF}').map(|rest| format!("   {rest}"));
     let content = unmarked.as_deref().unwrap_or(text);
     if content.trim().is_empty() {
@@ -84,7 +85,7 @@ fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene
     match serde_json::from_value::<Document>(checked.value) {
         Ok(document) => build(document, &tree, report).map(Box::new),
         Err(error) => {
-            // The schema is made from the same types, so that this is not reached; if it is, it must not be silent.
+            // The schema is made from the same types, so that this is not reached; if it were, it must not be silent.
             report.error(0..0, format!("the scene cannot be read: {error}"), None);
             None
         }

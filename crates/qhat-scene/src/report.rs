@@ -1,18 +1,18 @@
-//! Collects errors while a scene is read, and shows the text they are about.
+//! The errors of one text: collects them, and shows the line of each with the mistake underlined.
 
 use crate::error::{SceneError, SceneErrors};
 use std::ops::Range;
 
-/// A person corrects a few at a time, and a hostile text must not make a long list.
+/// The most errors of a report. A person corrects a few at a time, and a hostile text must not make a long list.
 const MOST_ERRORS: usize = 20;
-/// Characters of a line that are shown; of a longer one, the part around the error.
+/// The most characters of a line that are shown; of a longer line, the part around the error.
 const SHOWN: usize = 100;
-/// Characters shown before the error in a line that is cut.
+/// The characters shown before the error in a line that is cut.
 const BEFORE: usize = 40;
-/// Characters of a name or value that a message repeats.
+/// The most characters of a name or value that a message repeats.
 const QUOTED: usize = 60;
 
-/// The errors found so far in one text.
+/// The errors found so far in one text, and the text itself.
 pub(crate) struct Report<'a> {
     name: &'a str,
     text: &'a str,
@@ -27,7 +27,7 @@ impl<'a> Report<'a> {
         Report { name, text, line_starts, errors: Vec::new(), more: false }
     }
 
-    /// Adds an error about these bytes of the text.
+    /// Adds an error about these bytes of the text, with the help.
     pub(crate) fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         if self.errors.len() == MOST_ERRORS {
             self.more = true;
@@ -48,11 +48,15 @@ impl<'a> Report<'a> {
         self.errors.push(error);
     }
 
-    /// Whether no more errors are taken, so that looking on is of no use.
+    /// Whether the report takes no more errors, so that checking on is of no use.
     pub(crate) fn is_full(&mut self) -> bool {
-        let is_full = self.errors.len() == MOST_ERRORS;
-        self.more |= is_full;
-        is_full
+        // Not `self.more |= is_full`: rustc 1.95.0 at opt-level 2 and 3 compiles that, in callers that go on to
+        // `error`, to `self.more = true`.
+        if self.errors.len() < MOST_ERRORS {
+            return false;
+        }
+        self.more = true;
+        true
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -70,17 +74,18 @@ impl<'a> Report<'a> {
         self.line_starts.partition_point(|&start| start <= offset).max(1)
     }
 
-    /// A name from the scene in backticks, fit for a terminal.
+    /// A name from the scene in backticks, cut where it is long, safe for a terminal.
     pub(crate) fn quoted(&self, name: &str) -> String {
         format!("`{}`", shortened(name))
     }
 
-    /// The text of a value as it was written, fit for a terminal.
+    /// The text of a value as it stands in the scene, cut where it is long, safe for a terminal.
     pub(crate) fn written(&self, span: &Range<usize>) -> String {
         shortened(self.text.get(span.clone()).unwrap_or_default())
     }
 
-    /// Where a piece of a text value stands, whose value is at `span`; the whole value where it is written with escapes.
+    /// The place of a piece of a text value that stands at `span`; the place of the whole value where it is written
+    /// with escapes.
     pub(crate) fn piece(&self, span: &Range<usize>, value: &str, piece: &Range<usize>) -> Range<usize> {
         match self.text.get(span.clone()).and_then(|written| written.find(value)) {
             Some(quote) if !value.is_empty() => span.start + quote + piece.start..span.start + quote + piece.end,
@@ -88,7 +93,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// A sentence that quotes the scene, fit for a terminal.
+    /// A sentence that quotes the scene, safe for a terminal.
     pub(crate) fn fitted(&self, sentence: &str) -> String {
         sentence.chars().map(fit).collect()
     }
@@ -137,8 +142,14 @@ fn shortened(text: &str) -> String {
     shown
 }
 
-/// A character that moves nothing on a terminal: control characters, and those that turn the direction of writing, could
-/// make a message say what it does not.
+/// Text that is safe on a terminal, for names that come from scenes: control characters, and characters that turn the
+/// direction of writing, become U+FFFD or a space. Line ends stay.
+pub fn fitted(text: &str) -> String {
+    text.chars().map(|character| if character == '\n' { character } else { fit(character) }).collect()
+}
+
+/// The character, or a replacement for one that is unsafe on a terminal: control characters, and characters that turn
+/// the direction of writing, could make a message read as another.
 fn fit(character: char) -> char {
     match character {
         '\t' => ' ',

@@ -6,27 +6,28 @@ use qhat::{Settings, Simulation, State, StepError, System};
 /// A scene, ready to simulate.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The title people see.
+    /// The title.
     pub name: String,
-    /// One or two sentences that say what there is to see; may be empty.
+    /// One or two sentences on what the scene shows; may be empty.
     pub description: String,
     /// Particles, constraints and forces.
     pub system: System,
-    /// Where the file says it starts. An integrator that projects starts from the nearest consistent state.
+    /// The state at the start, as the file gives it. An integrator that projects starts from the nearest consistent
+    /// state.
     pub state: State,
-    /// How to step.
+    /// The settings of a run.
     pub settings: Settings,
-    /// How long a run is \[s\].
+    /// The duration of a run \[s\].
     pub duration: f64,
-    /// What the scene must show.
+    /// The results that the scene must show.
     pub expect: Option<Expect>,
 }
 
 impl Scene {
-    /// A simulation that starts where the scene starts.
+    /// A simulation from the start of the scene.
     ///
     /// # Errors
-    /// When the integrator projects and no positions near by satisfy the constraints.
+    /// No positions near the start satisfy the constraints, under an integrator that projects.
     pub fn simulation(&self) -> Result<Simulation, StepError> {
         Simulation::new(self.system.clone(), self.state.clone(), self.settings)
     }

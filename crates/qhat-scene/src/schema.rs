@@ -9,8 +9,9 @@ use std::sync::LazyLock;
 
 /// The JSON Schema of a scene file, draft 2020-12.
 ///
-/// The reader follows this very schema. A keyword of its own: `x-length` says that a list has one entry for each dimension. What one key says about another (an id that must
-/// exist, a fixed particle that must not move) no schema says.
+/// The reader checks scenes against this schema. Its own keyword `x-length` says that a list has one entry for each
+/// dimension. Conditions between keys (an id that must exist, a fixed particle that must not move) are not in the
+/// schema.
 pub fn json_schema() -> Value {
     schema().clone()
 }
@@ -23,7 +24,7 @@ pub(crate) fn schema() -> &'static Value {
     &SCHEMA
 }
 
-/// A key that may be left out is left out: TOML has no null, and one way to say it is enough.
+/// Takes null out of the schema. TOML has no null: a key without a value is left out.
 #[derive(Clone, Debug)]
 struct NoNull;
 

@@ -144,7 +144,8 @@ fn eliminate(mut A: Matrix, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// 300 frames; roundoff of 1e-16 a frame, which the motion of the scene multiplies by far less than the 1e6 allowed for.
+/// 300 frames; roundoff of 1e-16 a frame, which the motion of the scene multiplies by far less than the 1e6 allowed
+/// for.
 const FRAMES: usize = 300;
 const TOLERANCE: f64 = 1e-9;
 

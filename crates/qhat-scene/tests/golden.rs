@@ -1,5 +1,5 @@
-//! The same bits everywhere: a hash of q, q̇ and λ after some steps of shipped scenes, the same in debug, in release and
-//! in WebAssembly (`crates/qhat-wasm/tests/golden.mjs` reads the same file).
+//! The same bits everywhere: a hash of q, q̇ and λ after some steps of shipped scenes, the same in debug, in release
+//! and in WebAssembly (`crates/qhat-wasm/tests/golden.mjs` reads the same file).
 //!
 //! A change that is meant to change bits, in the engine or in a scene, writes the file anew:
 //! `QHAT_GOLDEN=write cargo test --release --package qhat-scene --test golden`, and says so in its message.

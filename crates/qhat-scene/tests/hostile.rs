@@ -22,8 +22,13 @@ fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> 
     prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, bytes), 1..6)
 }
 
+/// `make fuzz` sets QHAT_FUZZ and tries so many times as many.
+fn cases() -> u32 {
+    4000 * std::env::var("QHAT_FUZZ").map_or(1, |times| times.parse::<u32>().expect("QHAT_FUZZ is a whole number"))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
     #[test]
     fn changed_scenes_never_panic((text, format) in text(), edits in edits()) {

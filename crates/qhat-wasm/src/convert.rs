@@ -1,44 +1,19 @@
 //! The engine's records as JavaScript records, field by field, and the page's controls as calls of the engine.
 
-use crate::marks::Mark;
 use crate::record::{Record, error, list, number, numbers, point, strings, text};
-use crate::{Controls, Marks, Projection, StepReport, Structure, Terms};
+use crate::{Controls, Projection, Shapes, StepReport, Structure, Terms};
 use js_sys::Float64Array;
-use qhat::{Constraint, DistanceForm, Feedback, Force, Formulation, NailForm, Settings, Simulation, System, Warning};
+use qhat::{
+    Constraint, DistanceForm, EventKind, Feedback, Formulation, Link, NailForm, Settings, Simulation, System, Warning,
+};
+use qhat_shapes::{Shape, Source};
 use wasm_bindgen::{JsCast, JsValue};
 
 /// J and A cross only where a person could read them: cells of the larger one, m × N.
 const LARGEST_GRID: usize = 4096;
 
-pub(crate) fn structure(system: &System, name: &str, description: &str, duration: f64) -> Structure {
-    let length = |length: Option<f64>| length.map_or(JsValue::NULL, JsValue::from);
-    let links = system.links().map(|link| {
-        Record::new()
-            .with("name", link.name)
-            .with("a", link.a.index() as u32)
-            .with("b", link.b.index() as u32)
-            .with("shortest", length(link.shortest))
-            .with("longest", length(link.longest))
-            .with("rows", list(link.rows.map(|row| row as u32)))
-    });
-    let nails = system.constraints().iter().filter_map(|named| match &named.constraint {
-        Constraint::Nail(nail) => Some(
-            Record::new()
-                .with("name", named.name.as_str())
-                .with("particle", nail.particle.index() as u32)
-                .with("at", list(nail.at)),
-        ),
-        _ => None,
-    });
-    let springs = system.forces().iter().filter_map(|force| match force {
-        Force::Spring(spring) => Some(
-            Record::new()
-                .with("a", spring.a.index() as u32)
-                .with("b", spring.b.index() as u32)
-                .with("rest", spring.rest),
-        ),
-        _ => None,
-    });
+pub(crate) fn structure(simulation: &Simulation, name: &str, description: &str, duration: f64) -> Structure {
+    let system = simulation.system();
     Record::new()
         .with("name", name)
         .with("description", description)
@@ -48,22 +23,37 @@ pub(crate) fn structure(system: &System, name: &str, description: &str, duration
         .with("row_names", strings(system.row_names()))
         .with("masses", numbers(system.masses()))
         .with("fixed", list(system.particles().map(|particle| system.is_fixed(particle))))
-        .with("links", list(links))
-        .with("nails", list(nails))
-        .with("springs", list(springs))
+        .with("shapes", shapes(system, &qhat_shapes::shapes(system, simulation.state())))
         .finish()
 }
 
-pub(crate) fn marks(marks: &[Mark]) -> Marks {
-    let records = marks.iter().map(|mark| {
+pub(crate) fn shapes(system: &System, shapes: &[Shape]) -> Shapes {
+    let links: Vec<Link<'_>> = system.links().collect();
+    let records = shapes.iter().map(|shape| {
+        let (source, index, name) = match shape.of {
+            Source::Constraint(i) => ("constraint", i, system.constraints()[i].name.as_str()),
+            Source::Force(i) => ("force", i, ""),
+        };
         Record::new()
-            .with("kind", mark.kind)
-            .with("particles", list(mark.particles.iter().map(|particle| particle.index() as u32)))
-            .with("points", numbers(mark.points.as_flattened()))
-            .with("size", mark.size)
-            .with("driven", mark.driven)
+            .with("kind", shape.kind.name())
+            .with("of", Record::new().with("list", source).with("index", index as u32))
+            .with("name", name)
+            .with("particles", list(shape.particles.iter().map(|particle| particle.index() as u32)))
+            .with("points", numbers(shape.points.as_flattened()))
+            .with("size", shape.size)
+            .with("driven", shape.driven)
+            .with("link", shape.link.map_or(JsValue::NULL, |place| link(place, &links[place]).into()))
     });
     list(records).unchecked_into()
+}
+
+fn link(place: usize, link: &Link<'_>) -> Record {
+    let length = |length: Option<f64>| length.map_or(JsValue::NULL, JsValue::from);
+    Record::new()
+        .with("place", place as u32)
+        .with("shortest", length(link.shortest))
+        .with("longest", length(link.longest))
+        .with("rows", list(link.rows.clone().map(|row| row as u32)))
 }
 
 pub(crate) fn energy(energy: &qhat::Energy) -> Record {
@@ -97,9 +87,18 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .finish()
 }
 
-/// What happened, to which constraint, and when.
+/// What happened, to which constraint, and when; of an impact also how fast it closed in.
 fn event(event: &qhat::Event) -> Record {
-    Record::new().with("kind", event.kind.name()).with("constraint", event.constraint.as_str()).with("time", event.time)
+    let speed = match event.kind {
+        EventKind::Impact { speed } => Some(speed),
+        _ => None,
+    };
+    let record = Record::new().with("kind", event.kind.name());
+    let record = record.with("constraint", event.constraint.as_str()).with("time", event.time);
+    match speed {
+        Some(speed) => record.with("speed", speed),
+        None => record,
+    }
 }
 
 pub(crate) fn projection(projection: &qhat::Projection) -> Projection {

@@ -3,7 +3,6 @@
 //! The types that cross are declared in `types.d.ts` beside this file and become part of the generated declarations.
 
 mod convert;
-mod marks;
 mod record;
 
 use qhat::{ForceError, Integrator, Settings};
@@ -35,8 +34,8 @@ extern "C" {
     #[wasm_bindgen(typescript_type = "Terms")]
     pub type Terms;
     /// A list of records of `types.d.ts`.
-    #[wasm_bindgen(typescript_type = "Mark[]")]
-    pub type Marks;
+    #[wasm_bindgen(typescript_type = "Shape[]")]
+    pub type Shapes;
     /// A list of records of `types.d.ts`.
     #[wasm_bindgen(typescript_type = "Shipped[]")]
     pub type ShippedScenes;
@@ -103,12 +102,13 @@ impl Simulation {
 
     /// What the scene is made of, in its present forms.
     pub fn structure(&self) -> Structure {
-        convert::structure(self.inner.system(), &self.name, &self.description, self.duration)
+        convert::structure(&self.inner, &self.name, &self.description, self.duration)
     }
 
-    /// What holds the particles beside rods, nails and springs, as it is at a time \[s\].
-    pub fn marks(&self, time: f64) -> Marks {
-        convert::marks(&marks::marks(self.inner.system(), self.inner.state(), time))
+    /// The driven shapes at a time \[s\], in the order in which they stand among the shapes of the structure.
+    pub fn driven_shapes(&self, time: f64) -> Shapes {
+        let (system, state) = (self.inner.system(), self.inner.state());
+        convert::shapes(system, &qhat_shapes::driven_shapes(system, state, time))
     }
 
     /// t \[s\].

@@ -33,52 +33,27 @@ export interface Shipped {
   text: string;
 }
 
-/** What acts along the line of two particles and has a tension: a rod, a rope, a strut. */
-export interface Link {
-  name: string;
-  a: number;
-  b: number;
-  /** the least its ends are apart, m; null for a rope */
-  shortest: number | null;
-  /** the most its ends are apart, m; null for a strut that lets them go; of a rod both are its length */
-  longest: number | null;
-  /** which multipliers are its own; of two limits the longest comes first */
-  rows: number[];
-}
-
-export interface Nail {
-  name: string;
-  particle: number;
-  /** m, always three numbers */
-  at: number[];
-}
-
-export interface Spring {
-  a: number;
-  b: number;
-  /** m */
-  rest: number;
-}
-
-/** What a mark is drawn as. In brackets its particles, then its points, then its size in m. */
-export type MarkKind =
+/** What a shape is drawn as. In brackets its particles, then its points, then its size in m. */
+export type ShapeKind =
+  /** one length [a, b; ; length] */
+  | 'rod'
   /** taut at its length, slack below [a, b; ; length] */
   | 'rope'
-  /** pushes at its length, loose beyond, to its other limit if it has one [a, b; ; length] */
+  /** pushes at its length, loose beyond, to its other limit if it has one [a, b; ; shortest length] */
   | 'strut'
-  /** a rod whose length or other end is led [a, b; ; length] or [a; b; length] */
-  | 'rod'
-  /** a piece of a rope over pulleys [a, b] */
+  /** a rod whose length or other end is driven [a, b; ; length] or [a; b; length] */
+  | 'driven-rod'
+  /** a piece of a rope over pulleys [a, b; ; 0] */
   | 'cord'
-  /** belongs together, with nothing solid between [a, b] */
+  /** belongs together, with nothing solid between [a, b; ; 0] */
   | 'tie'
-  /** a spring that is not linear [a, b] */
+  /** a spring, linear or not [a, b; ; rest length] */
   | 'spring'
-  /** pushes and pulls by itself [a, b] */
+  /** pushes and pulls by itself [a, b; ; 0] */
   | 'actuator'
-  /** a nail that is led [particle; point] */
+  /** holds a particle to a point; driven or not [particle; point; 0] */
   | 'nail'
-  /** a curve in the scene [; its points in order] */
+  /** a curve in the scene [; its points in order; 0] */
   | 'wire'
   /** endless [a, b], [a; direction] or [; point, direction] */
   | 'line'
@@ -101,9 +76,30 @@ export type MarkKind =
   /** [; point, normal] */
   | 'plane';
 
-/** What holds particles beside rods, nails and springs: where particles are and where points of the scene are. */
-export interface Mark {
-  kind: MarkKind;
+/** The constraint or force that a shape belongs to: its place among the scene's constraints or forces. */
+export interface Source {
+  list: 'constraint' | 'force';
+  index: number;
+}
+
+/** What a shape with a tension (rod, rope, strut) has beside it. */
+export interface Link {
+  /** its place in `tension()`, in `Terms.tension` and among the numbers of `broken()` */
+  place: number;
+  /** the least its ends are apart, m; null for a rope */
+  shortest: number | null;
+  /** the most its ends are apart, m; null for a strut that lets them go; of a rod both are its length */
+  longest: number | null;
+  /** which multipliers are its own; of two limits the longest comes first */
+  rows: number[];
+}
+
+/** One thing to draw: links, nails, springs, surfaces, curves, wheels, … */
+export interface Shape {
+  kind: ShapeKind;
+  of: Source;
+  /** the name of its constraint; '' where it is of a force */
+  name: string;
   particles: number[];
   /** m, three numbers each */
   points: Float64Array;
@@ -111,6 +107,8 @@ export interface Mark {
   size: number;
   /** its points and its size follow t; without, they stay as they are */
   driven: boolean;
+  /** of rods, ropes and struts, in the order of `tension()`; null for all others */
+  link: Link | null;
 }
 
 /** What a scene is made of: all that does not change while it runs. */
@@ -125,9 +123,8 @@ export interface Structure {
   /** kg */
   masses: Float64Array;
   fixed: boolean[];
-  links: Link[];
-  nails: Nail[];
-  springs: Spring[];
+  /** everything to draw; driven shapes as they are at the present time */
+  shapes: Shape[];
 }
 
 /** Everything the page's controls set. */
@@ -171,6 +168,8 @@ export interface StepEvent {
   constraint: string;
   /** s */
   time: number;
+  /** of an impact: how fast it closed in, m/s */
+  speed?: number;
 }
 
 export interface StepReport {

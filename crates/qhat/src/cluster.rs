@@ -1,28 +1,32 @@
-//! Cluster: particles that keep all their distances, as the rods that say so and none more.
+//! Cluster: the rods that keep all distances of some particles, and no more rods than that.
 //!
-//! n particles in general position need 2n − 3 rods in the plane and 3n − 6 in space: one bar, one triangle, in space one tetrahedron,
-//! and for every other particle d rods to particles that stand already. Its rods must not lie in one line (plane), so each particle takes, of
-//! the corners of the first simplex, those d whose directions, as unit vectors e, span the most:
+//! n particles in general position need 2n − 3 rods in the plane and 3n − 6 in space: one bar, one triangle, in space
+//! one tetrahedron, and for every other particle d rods to particles that stand already. The rods of a particle must
+//! not lie in one line (plane). Each particle therefore takes, of the corners of the first simplex, those d whose
+//! directions, as unit vectors e, span the most:
 //!
 //! ```text
 //! plane |e₁ × e₂|,   space |e₁ · (e₂ × e₃)|
 //! ```
 //!
-//! The corners themselves are far apart: the particle farthest from the first, the farthest from that, then the farthest from their line, then from
-//! their plane. So the least span, and with it the condition of the rods, is that of the shape.
+//! The corners of the simplex are far apart: the particle farthest from the first, the farthest from that, the
+//! farthest from the line of the two, and the farthest from the plane of the three. The least span, and with it the
+//! condition of the rods, is then that of the shape.
 //!
-//! Particles all in one line, or in space in one plane, cannot be held like this: rods in a line do not resist what moves across it. Two
-//! particles, and three in space, need no more than their rods.
+//! Particles all in one line, or in space in one plane, cannot be held like this: rods in a line do not resist a
+//! motion across it. Two particles, and three in space, need no more than their rods.
 
 use crate::allowed::GeometryError;
 use crate::number::cross;
 use crate::point::{dot, minus, norm, scaled};
 use crate::space::Dimension;
 
-/// What spans less than this of what unit vectors can is taken as flat: rods would hold it by 1e6 times the force on it.
+/// The relative span below which points count as collinear or coplanar. At this span the tension of a rod is 1e6
+/// times the load that it carries.
 const FLAT: f64 = 1e-6;
 
-/// The pairs of points [m] between which rods hold a cluster rigid, none of them superfluous; z is ignored in two dimensions.
+/// The pairs of points [m] between which rods hold a cluster rigid, with no superfluous rod; z is ignored in two
+/// dimensions.
 ///
 /// ```
 /// use qhat::{Dimension, rigid_rods};
@@ -33,8 +37,7 @@ const FLAT: f64 = 1e-6;
 /// ```
 ///
 /// # Errors
-/// Fewer than two points; two at the same place; points in one line, or in space in one plane, which rods between them
-/// cannot hold.
+/// In words: fewer than two points, two at the same place, all in one line, or in space all in one plane.
 pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usize; 2]>, GeometryError> {
     let d = dimension.number();
     let flat: Vec<[f64; 3]> = points.iter().map(|x| std::array::from_fn(|k| if k < d { x[k] } else { 0.0 })).collect();
@@ -49,7 +52,7 @@ pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usiz
             return Err(GeometryError::ClusterCoincides { point: i });
         }
         let unit: Vec<[f64; 3]> = to.iter().map(|&d| scaled(1.0 / norm(d), d)).collect();
-        // One corner of the simplex too many: the one to leave out.
+        // The simplex has one corner too many; `left` is the corner to leave out.
         let span = |left: usize| {
             let e: Vec<[f64; 3]> = (0..=d).filter(|k| *k != left).map(|k| unit[k]).collect();
             if d == 2 { norm(cross(e[0], e[1])) } else { dot(e[0], cross(e[1], e[2])).abs() }
@@ -60,7 +63,7 @@ pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usiz
     Ok(rods)
 }
 
-/// d + 1 of them that span as much as they can, or all where there are no more than d.
+/// d + 1 points that span as much as possible, or all points if there are no more than d.
 fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, GeometryError> {
     if points.len() < 2 {
         return Err(GeometryError::ClusterCount);

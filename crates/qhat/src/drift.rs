@@ -5,7 +5,7 @@ use crate::point::{block, minus, norm};
 use crate::settings::Settings;
 use crate::system::System;
 
-/// What is left of C = 0.
+/// The residuals of one motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
     /// max |C| over the rigid rows.
@@ -19,7 +19,8 @@ pub(crate) struct Drift {
     pub(crate) relative_length: f64,
 }
 
-/// Reads the drift off rows that were evaluated at q; inactive rows count for nothing. `inactive` may be empty: every row is active.
+/// The drift of rows that were evaluated at q. Inactive rows do not count; an empty `inactive` means that every row is
+/// active.
 pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bool], q: &[f64]) -> Drift {
     let mut drift = Drift::default();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
@@ -61,8 +62,9 @@ pub(crate) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
     worst
 }
 
-/// Where to stop: half the relative tolerance asked for, so that what is measured afterwards keeps the promise after
-/// rounding; or what the roundoff of the coordinates allows, where that is more. `farthest` is max |q| [m].
+/// The relative |C| at which a projection stops: half the constraint tolerance, so that a later measurement still lies
+/// within the tolerance after rounding, or the roundoff of the coordinates if that is larger. `farthest` is max |q|
+/// \[m\].
 pub(crate) fn attainable(system: &System, settings: &Settings, farthest: f64) -> f64 {
     // A coordinate is rounded by ε|q|; a difference of two of them and its square root add a few more.
     (0.5 * settings.constraint_tolerance).max(4.0 * f64::EPSILON * farthest / system.extent)

@@ -1,4 +1,4 @@
-//! A number that may change with time: the length of a driven rod, the angle of a crank.
+//! Driven: a number that may change with time, such as the length of a driven rod or the angle of a crank.
 
 use crate::allowed::{ValueError, finite};
 use crate::expression::{Expression, ExpressionError, Purpose, Scope};
@@ -8,14 +8,14 @@ use crate::space::Dimension;
 /// A number, or a function of t alone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Driven {
-    /// It stays.
+    /// A fixed number.
     Constant(f64),
-    /// It follows an expression that depends on nothing but t [s].
+    /// An expression that depends on t [s] alone.
     Function(Expression),
 }
 
 impl Driven {
-    /// s and ṡ at t. With a derivative in t they carry theirs: ṡ and s̈.
+    /// s and ṡ at t. If t carries a derivative, they carry theirs: ṡ and s̈.
     pub(crate) fn at<N: Number>(&self, t: N) -> (N, N) {
         match self {
             Driven::Constant(value) => (N::constant(*value), N::constant(0.0)),

@@ -1,4 +1,4 @@
-//! Energy, residuals and drift of a motion.
+//! The energy account of a motion.
 //!
 //! ```text
 //! T = ½ Σ m_i v_i·v_i over the particles that can move,   V = Σ of the forces' potentials     [J]
@@ -19,7 +19,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// V, of gravity, springs, point forces and the mouse spring.
     pub potential: f64,
-    /// What has crossed the border since t = 0.
+    /// Energy that has crossed the border of the system since t = 0.
     pub work: Work,
 }
 
@@ -29,7 +29,7 @@ impl Energy {
         self.kinetic + self.potential
     }
 
-    /// T + V less all that came in: constant for an exact integrator.
+    /// T + V minus the work that came in: constant for an exact integrator.
     pub fn balance(&self) -> f64 {
         self.total() - self.work.total()
     }
@@ -57,16 +57,16 @@ pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>
     system.all_forces().map(|force| force.power(motion)).sum()
 }
 
-/// −λᵀ C_t over the rows that are held [W], the power of what moves them: the constraint force has Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
-/// Ċ = 0 on legal motion.
+/// Power of the drives [W]: −λᵀ C_t over the rigid rows. The constraint force has the power Jᵀλ·q̇ = λᵀ (Ċ − C_t), and Ċ
+/// = 0 on legal motion.
 pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
     let mut power = 0.0;
-    // The rule, and quick to see without a branch for each row.
+    // In most systems no row depends on t, and one sum without branches shows it.
     if !Ct.iter().fold(false, |moves, &Ct| moves | (Ct != 0.0)) {
         return power;
     }
     for (row, &Ct) in Ct.iter().enumerate() {
-        // What gives way is a force; its λ is told, but does no work of its own.
+        // A compliant row acts as a force: its λ is reported, but the work is that of the force.
         if Ct != 0.0 && system.softness[row].is_rigid() {
             power -= lambda[row] * Ct;
         }

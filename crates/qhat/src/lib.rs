@@ -134,6 +134,7 @@ mod energy;
 mod ensemble;
 mod error;
 mod force;
+mod hyper;
 mod integrate;
 mod linalg;
 mod modes;
@@ -156,9 +157,10 @@ pub use allowed::{GeometryError, ValueError};
 pub use body::{Body, BodyError};
 pub use cluster::rigid_rods;
 pub use constraint::{
-    Anchor, Angle, Area, Constraint, ConstraintError, Curve, Direction, Distance, DistanceForm, DrivenPoint,
-    ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail, NailForm, NamedConstraint,
-    Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Rope, Strut, Surface, Volume,
+    Anchor, Angle, Area, Constraint, ConstraintError, Curve, Custom, CustomConstraint, Direction, Distance,
+    DistanceForm, DrivenPoint, ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail,
+    NailForm, NamedConstraint, Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Rope, Strut,
+    Surface, Volume,
 };
 pub use driven::Driven;
 pub use energy::Energy;
@@ -166,9 +168,11 @@ pub use ensemble::{run_all, step_all};
 pub use error::StepError;
 pub use expression::{Expression, ExpressionError, ParameterError, Purpose, Scope};
 pub use force::{
-    Actuator, AirDrag, CentralForce, CubicSpring, Drag, ExpressionForce, ExpressionPotential, Facet, Force, ForceError,
-    Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure, Spring, TorsionSpring,
+    Actuator, AirDrag, CentralForce, CubicSpring, CustomForce, CustomPotential, Drag, ExpressionForce,
+    ExpressionPotential, Facet, Force, ForceError, Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce,
+    Pressure, Spring, TorsionSpring,
 };
+pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
 pub use point::Vector;

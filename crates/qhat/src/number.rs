@@ -1,8 +1,11 @@
-//! Numbers that may carry a derivative: formulas written once over them give values, and with [`Dual`] their rates too.
+//! Numbers that may carry a derivative, and vectors of them. A formula written once over them gives values, and with
+//! [`Dual`] the rates of these values, too.
 //!
 //! ```text
 //! x + ẋ ε with ε² = 0:   f(x + ẋ ε) = f(x) + f'(x) ẋ ε
 //! ```
+//!
+//! `hyper/` has numbers that carry second derivatives.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -10,13 +13,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// A number that does not change.
+    /// A constant: its derivative is 0.
     fn constant(value: f64) -> Self;
     /// The number without its derivative.
     fn value(self) -> f64;
-    /// Its derivative; 0 for a plain number.
+    /// The derivative; 0 for a plain number.
     fn slope(self) -> f64;
-    /// f(x) where f and its derivative are known at x.
+    /// f(x), of a function whose value and derivative at x are given.
     fn with(self, f: f64, derivative: f64) -> Self;
 
     /// s x.
@@ -56,6 +59,10 @@ impl Number for f64 {
     }
     fn of(value: f64, _: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
     }
 }
 
@@ -120,27 +127,36 @@ impl Neg for Dual {
     }
 }
 
-/// Σ a_k b_k.
+/// a · b, summed from the first component on.
+#[inline(always)]
 pub(crate) fn dot<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> N {
-    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+    let mut sum = a[0] * b[0];
+    for k in 1..D {
+        sum = sum + a[k] * b[k];
+    }
+    sum
 }
 
 /// a − b.
+#[inline(always)]
 pub(crate) fn minus<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
     std::array::from_fn(|k| a[k] - b[k])
 }
 
 /// a + b.
+#[inline(always)]
 pub(crate) fn plus<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
 /// s a.
+#[inline(always)]
 pub(crate) fn scaled<N: Number, const D: usize>(s: N, a: [N; D]) -> [N; D] {
-    a.map(|a| s * a)
+    std::array::from_fn(|k| s * a[k])
 }
 
 /// a × b, in three dimensions.
+#[inline(always)]
 pub(crate) fn cross<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
     std::array::from_fn(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -149,11 +165,12 @@ pub(crate) fn cross<N: Number, const D: usize>(a: [N; D], b: [N; D]) -> [N; D] {
 }
 
 /// |a|.
+#[inline(always)]
 pub(crate) fn norm<N: Number, const D: usize>(a: [N; D]) -> N {
     dot(a, a).sqrt()
 }
 
-/// A vector of the plane in space, with z = 0; one of space as it is.
+/// A vector of the plane as one of space, with z = 0; a vector of space unchanged.
 pub(crate) fn raised<N: Number, const D: usize>(a: [N; D]) -> [N; 3] {
     std::array::from_fn(|k| if k < D { a[k] } else { N::constant(0.0) })
 }

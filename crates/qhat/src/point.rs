@@ -1,4 +1,6 @@
-//! Points and vectors of D components, and the motion they are read from.
+//! Points and vectors of D components, and the motion of all particles.
+
+pub(crate) use crate::number::{dot, minus, norm, scaled};
 
 use crate::space::ParticleId;
 
@@ -50,35 +52,7 @@ mod with_mint {
 /// A point or vector in D dimensions.
 pub(crate) type Point<const D: usize> = [f64; D];
 
-/// a − b.
-#[inline(always)]
-pub(crate) fn minus<const D: usize>(a: Point<D>, b: Point<D>) -> Point<D> {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
-/// s a.
-#[inline(always)]
-pub(crate) fn scaled<const D: usize>(s: f64, a: Point<D>) -> Point<D> {
-    std::array::from_fn(|k| s * a[k])
-}
-
-/// a · b, summed from the first component on.
-#[inline(always)]
-pub(crate) fn dot<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
-    let mut sum = a[0] * b[0];
-    for k in 1..D {
-        sum += a[k] * b[k];
-    }
-    sum
-}
-
-/// |a|.
-#[inline(always)]
-pub(crate) fn norm<const D: usize>(a: Point<D>) -> f64 {
-    dot(a, a).sqrt()
-}
-
-/// The first axis: a direction where there is none.
+/// The first axis: the direction that is taken where no direction exists.
 pub(crate) fn first_axis<const D: usize>() -> Point<D> {
     std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 })
 }
@@ -89,12 +63,12 @@ pub(crate) fn first<const D: usize>(a: &[f64; 3]) -> Point<D> {
     std::array::from_fn(|k| a[k])
 }
 
-/// Where every particle is and how it moves: q and q̇, flat, d·n each, at the time t.
+/// The positions q and velocities q̇ of all particles, flat, d·n each, at the time t.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion<'a, const D: usize> {
     pub(crate) q: &'a [f64],
     pub(crate) qd: &'a [f64],
-    /// t [s], for what depends on it explicitly.
+    /// t [s], for constraints and forces that depend on time.
     pub(crate) t: f64,
 }
 

@@ -1,5 +1,6 @@
 //! What a step tells.
 
+use crate::drift::Drift;
 use crate::energy::Energy;
 use crate::settings::Integrator;
 use std::fmt;
@@ -93,6 +94,19 @@ impl fmt::Display for EventKind {
 }
 
 impl StepReport {
+    /// Books one substep that was kept: its length [s], its Newton iterations, and what it left of C = 0 and Ċ = 0. A
+    /// substep without a length, at an event where it began, is not the smallest.
+    pub(crate) fn book(&mut self, h: f64, iterations: usize, drift: &Drift) {
+        self.substeps += 1;
+        self.iterations += iterations;
+        if h > 0.0 {
+            self.smallest_substep = self.smallest_substep.min(h);
+        }
+        self.max_residual = self.max_residual.max(drift.residual);
+        self.max_residual_rate = self.max_residual_rate.max(drift.residual_rate);
+        self.max_relative_length_error = self.max_relative_length_error.max(drift.relative_length);
+    }
+
     /// Takes the next step's report into this one.
     pub(crate) fn absorb(&mut self, next: StepReport) {
         self.smallest_substep =

@@ -10,7 +10,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// d as a number.
+    /// d as a number, 2 or 3.
     pub fn number(self) -> usize {
         match self {
             Dimension::Two => 2,
@@ -19,7 +19,7 @@ impl Dimension {
     }
 }
 
-/// Runs a generic body with `$D` bound to the number of dimensions: the one place where d becomes a constant.
+/// Runs a generic body with `$D` bound to the number of dimensions. It is the only place at which d becomes a constant.
 macro_rules! in_dimension {
     ($dimension:expr, $D:ident => $body:expr) => {
         match $dimension {

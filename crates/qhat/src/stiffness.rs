@@ -1,16 +1,17 @@
-//! Stiffness −∂Q/∂q of one constraint or force, block by block, so that a method may leave out what could be negative.
+//! Stiffness −∂Q/∂q of one constraint or force, block by block, so that a method can leave out blocks that may be
+//! negative.
 
 use crate::linalg::block::Block;
 
-/// The stiffness [N/m] between two particles i and j; with i = j that of one on itself.
+/// The stiffness [N/m] between two particles i and j; with i = j that of one particle on itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stiffness<const D: usize> {
-    /// Of what depends on x_i − x_j alone: B on ii and on jj, −B on ij and on ji; with i = j, of what depends on x_i alone. B is
-    /// semidefinite, of either sign.
+    /// Stiffness of a force that depends on x_i − x_j alone: B on ii and on jj, −B on ij and on ji. With i = j, of a
+    /// force that depends on x_i alone. B is semidefinite, of either sign.
     Difference(Block<D>),
-    /// Row i, column j, with the transpose implied: one block of a positive semidefinite matrix that is handed over whole.
+    /// Row i, column j, with the transpose implied: one block of a positive semidefinite matrix whose blocks all come.
     Definite(Block<D>),
-    /// The same of a matrix whose sign is not known.
+    /// Row i, column j of a matrix whose sign is not known.
     Indefinite(Block<D>),
 }
 

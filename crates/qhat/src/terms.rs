@@ -4,7 +4,6 @@ use crate::constraint::Jacobian;
 use crate::integrate::Workspace;
 use crate::linalg::SymmetricMatrix;
 use crate::multiplier::Equation;
-use crate::point::Motion;
 use crate::report::Warning;
 use crate::settings::Feedback;
 use crate::space::in_dimension;
@@ -52,9 +51,10 @@ pub struct Terms {
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,
-    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied, positive where it pulls its ends together [N].
+    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied [N]; positive if it pulls
+    /// its ends together.
     pub tension: Vec<f64>,
-    /// Whether a row takes no part: an open contact, friction that is not needed to hold, what is broken; m.
+    /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.
     pub is_open: Vec<bool>,
     /// Rank of A; `None` where A is singular and too large for the rank to be counted.
     pub rank: Option<usize>,
@@ -111,7 +111,7 @@ pub const NOTATION: [Notation; 21] = [
     row("Q̂", "Q_hat", "constraint_forces", "N", "N", "multiplier/reaction.rs"),
     row("q̈", "qdd", "accelerations", "N", "m/s²", "multiplier/reaction.rs"),
     row("T", "tension", "tension", "links", "N", "constraint/link.rs"),
-    row("λ off", "off", "is_open", "m", "1", "switching/modes.rs"),
+    row("λ off", "off", "is_open", "m", "1", "modes.rs"),
     row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
 ];
 
@@ -135,20 +135,11 @@ impl Workspace {
     /// Every symbol at a state. Integrators that project see the bare equation: their feedback is none.
     pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
         let tension = self.tension(system, state, feedback);
-        let equation = self.equation().clone();
-        collect(system, state, equation, tension)
-    }
-
-    /// Signed tension of every link [N], as applied.
-    pub(crate) fn tension(&mut self, system: &System, state: &State, feedback: &Feedback) -> Vec<f64> {
-        in_dimension!(system.dimension, D => {
-            let equation = self.solve::<D>(system, state, feedback);
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-            tension(system, motion, &equation.lambda, 1.0 - feedback.elasticity)
-        })
+        collect(system, state, self.equation().clone(), tension)
     }
 }
 
+/// The symbols of an equation that was solved at a state, with the tensions that belong to it.
 fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
     let rank = equation.solver.rank(&system.matrix);
     let warnings = equation.warnings(system);
@@ -179,10 +170,4 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         rank,
         warnings,
     }
-}
-
-/// Signed tension of every link [N] for given multipliers, as applied.
-fn tension<const D: usize>(system: &System, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> Vec<f64> {
-    let links = system.constraints.iter().filter_map(|named| Some((named.constraint.as_link()?, named.first_row)));
-    links.map(|(link, first_row)| link.tension(motion, &lambda[first_row..], s)).collect()
 }

@@ -1,7 +1,6 @@
 //! What a program asks a simulation: by id and by name, between steps.
 
-mod systems;
-
+use crate::systems;
 use qhat::{
     Angle, Constraint, Dimension, Distance, Driven, Force, ForceError, Gravity, Integrator, Limits, Nail, Obstacle,
     Particle, PointForce, Rope, Settings, Simulation, Spring, Strut, Surface, System, Vector,

@@ -1,10 +1,7 @@
 //! What auto chooses, and that its choice depends on nothing but the state.
 
-mod systems;
-
+use crate::systems::{self, FRAME};
 use qhat::{Integrator, Settings, Simulation, Solver, Warning, Workspace, step};
-
-const FRAME: f64 = 1.0 / 60.0;
 
 fn settings(frame_work: usize) -> Settings {
     Settings { frame_work, ..systems::settings(Integrator::Auto, FRAME) }

@@ -1,14 +1,10 @@
 //! Contacts, ropes, friction and what breaks, against closed forms.
 
-mod systems;
-
+use crate::systems::{FRAME, G, gravity, settings};
 use qhat::{
     Dimension, Distance, EventKind, Integrator, Limits, Obstacle, Particle, Settings, Simulation, StepError,
     StepReport, Surface, System, SystemBuilder,
 };
-use systems::{G, gravity, settings};
-
-const FRAME: f64 = 1.0 / 60.0;
 
 fn ground() -> Surface {
     Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 }
@@ -123,7 +119,8 @@ fn a_rope_goes_taut_and_holds() {
     assert!(simulation.energy_error().abs() < 1e-8);
 }
 
-/// Given v² < 5 g r at the bottom of a loop it leaves where v² has fallen to −g r cos: the rope goes slack at that height.
+/// Given v² < 5 g r at the bottom of a loop it leaves where v² has fallen to −g r cos: the rope goes slack at that
+/// height.
 #[test]
 fn a_rope_goes_slack_where_its_tension_ends() {
     let v2 = 3.5 * G;
@@ -232,7 +229,7 @@ fn bridge() -> (SystemBuilder, usize) {
     }
     let count = deck.len() + 4;
     for i in 0..count {
-        let barrier = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(systems::id(i), ground()) };
+        let barrier = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(crate::systems::id(i), ground()) };
         builder.constraint(format!("ground{i}"), barrier);
     }
     builder.force(gravity());

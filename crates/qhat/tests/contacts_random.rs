@@ -1,15 +1,11 @@
 //! Random heaps of rods, ropes and struts dropped on the ground, a ball and a box: what holds whatever happens.
 
-mod systems;
-
+use crate::systems::random::Random;
+use crate::systems::{self, FRAME, G, gravity, settings};
 use qhat::{
     Dimension, Distance, Integrator, Limits, Obstacle, Particle, Settings, State, Surface, System, SystemBuilder,
     Workspace, step,
 };
-use systems::random::Random;
-use systems::{G, gravity, settings};
-
-const FRAME: f64 = 1.0 / 60.0;
 
 /// What particles must stay out of.
 fn surfaces() -> [Surface; 3] {
@@ -92,33 +88,45 @@ fn total(report: &qhat::StepReport) -> f64 {
     report.energy.kinetic + report.energy.potential
 }
 
-/// T + V never rises, nothing sinks in, and a fresh workspace at every frame gives the same bits as one that is kept.
-#[test]
-fn heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
-    // Sixty of any kind, and those that once gained energy at an edge, slipped to and fro for ever, or had no answer to friction.
-    for seed in (0..60).chain([87, 212, 281, 460, 492, 607, 610, 612, 682, 932, 1006, 1165, 1270, 1280, 2158]) {
-        let (system, mut state) = heap(&mut Random::new(seed)).build().unwrap();
-        let d = system.dimension();
-        let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, FRAME) };
-        let mut workspace = Workspace::new(&system);
-        qhat::check_start(&system, &state, &settings).unwrap();
-        qhat::project(&system, &mut state, &settings, &mut workspace).unwrap();
-        // All that may turn into motion: a fall of 4 m.
-        let scale = 4.0 * G * system.masses().iter().sum::<f64>();
-        let mut restarted = state.clone();
-        let mut energy = f64::INFINITY;
-        for frame in 0..120 {
-            let report = step(&system, &mut state, &settings, &mut workspace);
-            let report = report.unwrap_or_else(|error| panic!("seed {seed}, frame {frame}: {error}"));
-            let now = total(&report);
-            assert!(now - energy < 1e-9 * scale, "seed {seed}, frame {frame}: rose by {:e}", (now - energy) / scale);
-            energy = now;
-            let depth = lowest(&state, d);
-            assert!(depth > -1e-8, "seed {seed}, frame {frame}: {depth:e} m");
-            assert!(report.max_relative_length_error < 1e-9, "seed {seed}, frame {frame}");
-            let again = step(&system, &mut restarted, &settings, &mut Workspace::new(&system)).unwrap();
-            assert_eq!(again.events, report.events, "seed {seed}, frame {frame}");
-            assert_eq!(restarted, state, "seed {seed}, frame {frame}");
-        }
+/// What goes wrong in two seconds of the heap of this seed: T + V never rises, nothing sinks in, and a fresh workspace
+/// at every frame gives the same bits as one that is kept.
+fn run(seed: u64) -> Result<(), String> {
+    let (system, mut state) = heap(&mut Random::new(seed)).build().unwrap();
+    let d = system.dimension();
+    let settings = Settings { tolerance: 1e-9, ..settings(Integrator::Dop853, FRAME) };
+    let mut workspace = Workspace::new(&system);
+    qhat::check_start(&system, &state, &settings).unwrap();
+    qhat::project(&system, &mut state, &settings, &mut workspace).unwrap();
+    // All that may turn into motion: a fall of 4 m.
+    let scale = 4.0 * G * system.masses().iter().sum::<f64>();
+    let mut restarted = state.clone();
+    let mut energy = f64::INFINITY;
+    for frame in 0..120 {
+        let must = |holds: bool, words: &dyn Fn() -> String| {
+            if holds { Ok(()) } else { Err(format!("seed {seed}, frame {frame}: {}", words())) }
+        };
+        let report = step(&system, &mut state, &settings, &mut workspace);
+        let report = report.map_err(|error| format!("seed {seed}, frame {frame}: {error}"))?;
+        let now = total(&report);
+        must(now - energy < 1e-9 * scale, &|| format!("the energy rose by {:e}", (now - energy) / scale))?;
+        energy = now;
+        let depth = lowest(&state, d);
+        must(depth > -1e-8, &|| format!("{depth:e} m"))?;
+        must(report.max_relative_length_error < 1e-9, &|| format!("lengths: {:e}", report.max_relative_length_error))?;
+        let again = step(&system, &mut restarted, &settings, &mut Workspace::new(&system)).unwrap();
+        must(again.events == report.events, &|| "other events after a restart".into())?;
+        must(restarted == state, &|| "another state after a restart".into())?;
     }
+    Ok(())
+}
+
+/// Sixty of any kind, and those that once gained energy at an edge, slipped to and fro for ever, or had no answer to
+/// friction. `make fuzz` runs more: 2 of 2400 are known to end in an error.
+#[test]
+fn long_heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
+    let once_wrong = [87, 212, 281, 460, 492, 607, 610, 612, 682, 932, 1006, 1165, 1270, 1280, 2158];
+    let more = 60 * systems::fuzz();
+    let seeds = (0..more).chain(once_wrong.into_iter().filter(|seed| *seed >= more));
+    let failures: Vec<String> = seeds.filter_map(|seed| run(seed).err()).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }

@@ -1,11 +1,7 @@
 //! Where the force of a contact has no answer, or jumps: friction that presses its own contact, and edges.
 
-mod systems;
-
+use crate::systems::{FRAME, G, gravity, settings};
 use qhat::{Dimension, Distance, Integrator, Obstacle, Particle, Settings, Simulation, Surface, System, SystemBuilder};
-use systems::{G, gravity, settings};
-
-const FRAME: f64 = 1.0 / 60.0;
 
 fn start(builder: SystemBuilder) -> Simulation {
     let (system, state) = builder.build().unwrap();
@@ -13,14 +9,15 @@ fn start(builder: SystemBuilder) -> Simulation {
     Simulation::new(system, state, settings).unwrap()
 }
 
-/// A rod pushed over rough ground with its lower end in front, as chalk over a board. Friction turns the rod so that it presses on the
-/// ground: by more than the ground can push it back where
+/// A rod pushed over rough ground with its lower end in front, as chalk over a board. Friction turns the rod so that it
+/// presses on the ground: by more than the ground can push it back where
 ///
 /// ```text
 /// 1 − k sin² a − μ k sin a cos a < 0,   k = m₂/(m₁ + m₂)
 /// ```
 ///
-/// No force answers. The lower end stops at once, and takes the motion along the rod with it: m₁ v²/2 + m₂ (v cos a)²/2.
+/// No force answers. The lower end stops at once, and takes the motion along the rod with it: m₁ v²/2 + m₂ (v cos
+/// a)²/2.
 #[test]
 fn friction_without_an_answer_stops_the_slip_at_once() {
     let (lower, upper, speed, angle) = (1.0, 10.0, 1.0, std::f64::consts::FRAC_PI_3);

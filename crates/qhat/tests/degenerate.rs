@@ -1,13 +1,12 @@
 //! Degenerate systems: a status or a typed error, never a panic, and never silent nonsense. What users may get wrong in
 //! numbers and names is in `refused.rs`.
 
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_close, largest, norm};
 use qhat::{
     Dimension, Distance, DistanceForm, Feedback, Formulation, Integrator, Nail, NailForm, Particle, Settings,
     Simulation, State, StepError, System, SystemBuilder, Warning, Workspace, evaluate, step,
 };
-use systems::dense::{assert_close, largest, norm};
 
 fn plane() -> SystemBuilder {
     System::builder(Dimension::Two)

@@ -16,7 +16,7 @@ fn read(path: &str) -> String {
 fn documents() -> Vec<String> {
     let mut found: Vec<String> =
         ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(String::from).into();
-    for folder in ["docs", "docs/method"] {
+    for folder in ["docs", "docs/method", "docs/decisions"] {
         for entry in fs::read_dir(root().join(folder)).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
             if name.ends_with(".md") {
@@ -30,7 +30,8 @@ fn documents() -> Vec<String> {
 #[test]
 fn notation_table_is_the_one_in_the_code() {
     let table = read("docs/notation.md");
-    let rows: Vec<&str> = table.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
+    let first = table.lines().skip_while(|line| !line.starts_with("| symbol | letters |"));
+    let rows: Vec<&str> = first.skip(2).take_while(|line| line.starts_with("| ")).collect();
     let expected: Vec<String> = NOTATION
         .iter()
         .map(|n| {
@@ -97,4 +98,65 @@ fn every_link_in_a_document_leads_somewhere() {
         }
     }
     assert!(links > 5, "the search for links found only {links}");
+}
+
+/// Where a crate's tests are one binary, a file beside `main.rs` that it does not list would never be compiled.
+#[test]
+fn every_file_of_tests_is_compiled() {
+    let rust_files = |folder: &Path| -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let found = entries.filter_map(|path| {
+            let module =
+                path.is_dir() && path.join("mod.rs").exists() || path.extension().is_some_and(|end| end == "rs");
+            module.then(|| path.file_stem().unwrap().to_str().unwrap().to_owned())
+        });
+        found.filter(|name| name != "main" && name != "mod").collect()
+    };
+    let mut compiled = 0;
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        let package = entry.unwrap().path();
+        let tests = package.join("tests");
+        let Ok(main) = fs::read_to_string(tests.join("main.rs")) else { continue };
+        let manifest = fs::read_to_string(package.join("Cargo.toml")).unwrap();
+        for name in rust_files(&tests) {
+            let is_module = main.contains(&format!("\nmod {name};"));
+            let has_a_binary = manifest.contains(&format!("[[test]]\nname = \"{name}\"\n"));
+            assert!(is_module || has_a_binary, "{}/{name} is in no list: add it to main.rs", tests.display());
+            let folder = tests.join(&name);
+            if folder.join("mod.rs").exists() {
+                let list = fs::read_to_string(folder.join("mod.rs")).unwrap();
+                for inner in rust_files(&folder) {
+                    let is_listed = list.contains(&format!("mod {inner};"));
+                    assert!(is_listed, "{}/{inner}.rs is in no list: add it to mod.rs", folder.display());
+                }
+            }
+            compiled += 1;
+        }
+    }
+    assert!(compiled > 40, "the search for tests found only {compiled}");
+}
+
+/// A manifest that says `test = false` leaves no test uncompiled.
+#[test]
+fn no_source_has_tests_that_its_manifest_leaves_out() {
+    fn walk(folder: &Path) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                walk(&path);
+            } else if path.extension().is_some_and(|end| end == "rs") {
+                let source = fs::read_to_string(&path).unwrap();
+                assert!(!source.contains("#[test]"), "{}: its manifest says `test = false`", path.display());
+            }
+        }
+    }
+    let mut left_out = 0;
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        let package = entry.unwrap().path();
+        if fs::read_to_string(package.join("Cargo.toml")).unwrap().contains("\ntest = false\n") {
+            walk(&package.join("src"));
+            left_out += 1;
+        }
+    }
+    assert!(left_out > 0, "no manifest says `test = false`: remove this test");
 }

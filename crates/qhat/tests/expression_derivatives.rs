@@ -1,15 +1,11 @@
-//! Ten thousand random expressions: what they mean against a second evaluator over the tree they were printed from, and their
-//! derivatives against differences of that evaluator.
+//! Ten thousand random expressions: what they mean against a second evaluator over the tree they were printed from, and
+//! their derivatives against differences of that evaluator.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems::random::{Random, dimension};
 use proptest::prelude::*;
 use proptest::test_runner::{TestRng, TestRunner};
 use qhat::{Expression, Purpose, Scope};
 use std::cell::Cell;
-use systems::random::{Random, dimension};
 
 /// A number.
 #[derive(Clone, Debug)]
@@ -52,8 +48,8 @@ struct At {
     t: f64,
 }
 
-/// Nearest distance of any argument to a kink or to the edge of a domain, and size of any number, beyond which differences
-/// cannot follow.
+/// Nearest distance of any argument to a kink or to the edge of a domain, and size of any number, beyond which
+/// differences cannot follow.
 const MARGIN: f64 = 0.1;
 const SIZE: f64 = 1e3;
 
@@ -273,15 +269,18 @@ fn number() -> impl Strategy<Value = Number> {
             4 => (proptest::sample::select(one), number.clone()).prop_map(|(f, a)| Number::One(f, Box::new(a))),
             2 => (proptest::sample::select(vec!["atan2", "min", "max"]), number.clone(), number)
                 .prop_map(|(f, a, b)| Number::Two(f, Box::new(a), Box::new(b))),
-            4 => (proptest::sample::select(vec!["dot", "dist", "length", "content"]), proptest::collection::vec(point.clone(), 4))
+            4 => (
+                proptest::sample::select(vec!["dot", "dist", "length", "content"]),
+                proptest::collection::vec(point.clone(), 4),
+            )
                 .prop_map(|(f, p)| Number::OfPoints(f, p)),
             1 => (0_usize..3, point.clone(), point).prop_map(|(k, a, b)| Number::CrossComponent(k, a, b)),
         ]
     })
 }
 
-/// Central differences of order `order` at shrinking steps, extrapolated to zero (Ridders 1982): the derivative and what it may
-/// be wrong by.
+/// Central differences of order `order` at shrinking steps, extrapolated to zero (Ridders 1982): the derivative and
+/// what it may be wrong by.
 fn ridders(order: i32, f: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     const LEVELS: usize = 7;
     let mut table = [[0.0; LEVELS]; LEVELS];
@@ -305,8 +304,8 @@ fn ridders(order: i32, f: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     Some(best)
 }
 
-/// What differences of numbers of size s resolve: at the smallest h of 0.005 a second difference of numbers known to 1e-15 s is
-/// known to 1e-15 s/h² = 4e-11 s, a few hundred times that after extrapolation.
+/// What differences of numbers of size s resolve: at the smallest h of 0.005 a second difference of numbers known to
+/// 1e-15 s is known to 1e-15 s/h² = 4e-11 s, a few hundred times that after extrapolation.
 const RESOLVED: f64 = 1e-7;
 /// Twenty times what is resolved; a term that is missing is as large as the derivative.
 const TOLERANCE: f64 = 2e-6;
@@ -344,7 +343,7 @@ fn along(x: &[f64], direction: &[f64], tau: f64) -> Vec<f64> {
 }
 
 fn parse(text: &str, d: usize) -> Result<Expression, qhat::ExpressionError> {
-    let particle = |name: &str| NAMES.iter().position(|known| *known == name).map(systems::id);
+    let particle = |name: &str| NAMES.iter().position(|known| *known == name).map(crate::systems::id);
     let parameter = |name: &str| (name == "k").then_some(PARAMETER);
     let scope = Scope { parameter: &parameter, ..Scope::new(Purpose::Force, dimension(d), &particle) };
     Expression::parse(text, &scope)

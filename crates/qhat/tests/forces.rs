@@ -1,14 +1,11 @@
-//! The applied forces of every kind: Q against its formula, its conservative part against differences of the potential, and
-//! the power of the rest against F·v.
+//! The applied forces of every kind: Q against its formula, its conservative part against differences of the potential,
+//! and the power of the rest against F·v.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, dot, norm};
+use crate::systems::random::{Random, dimension};
 use qhat::{Drag, Force, Gravity, Integrator, MouseSpring, Particle, PointForce, Simulation, Spring, State};
 use qhat::{System, evaluate, step};
-use systems::dense::{assert_all_close, assert_close, dot, norm};
-use systems::random::{Random, dimension};
 
 const STATES: usize = 40;
 
@@ -100,7 +97,7 @@ fn spring_force(i: usize, x: &[&[f64]], v: &[&[f64]], damping: f64) -> Vec<f64> 
 }
 
 fn spring(damping: f64) -> Force {
-    Spring { a: systems::id(2), b: systems::id(0), stiffness: 13.0, damping, rest: 0.9 }.into()
+    Spring { a: crate::systems::id(2), b: crate::systems::id(0), stiffness: 13.0, damping, rest: 0.9 }.into()
 }
 
 #[test]
@@ -131,7 +128,7 @@ fn point_force_acts_on_its_particle_alone() {
     let formula = |i: usize, x: &[&[f64]], _: &[&[f64]], _: &[f64]| {
         F[..x[i].len()].iter().map(|f| if i == 1 { *f } else { 0.0 }).collect::<Vec<_>>()
     };
-    check(|_| PointForce { particle: systems::id(1), force: F }.into(), &formula, false);
+    check(|_| PointForce { particle: crate::systems::id(1), force: F }.into(), &formula, false);
 }
 
 #[test]
@@ -141,7 +138,7 @@ fn mouse_spring_pulls_to_its_target() {
         let pull = |k: usize| if i == 1 { -6.0 * (x[1][k] - TARGET[k]) - 0.9 * v[1][k] } else { 0.0 };
         (0..x[i].len()).map(pull).collect::<Vec<_>>()
     };
-    let mouse = MouseSpring { particle: systems::id(1), target: TARGET, stiffness: 6.0, damping: 0.9 };
+    let mouse = MouseSpring { particle: crate::systems::id(1), target: TARGET, stiffness: 6.0, damping: 0.9 };
     check(|_| mouse.clone().into(), &formula, true);
 }
 

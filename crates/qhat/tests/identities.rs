@@ -2,13 +2,10 @@
 //! equations, the feedback C̈ + kd Ċ + ks C = 0, and the two menus of the source, diagonal drag and elasticity.
 //! Work, momentum and signs are in `reactions.rs`.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, dot, largest, multiply, multiply_transposed, sandwich};
+use crate::systems::random::{Random, web};
 use qhat::{Feedback, Integrator, Simulation, State, System, Terms, evaluate};
-use systems::dense::{assert_all_close, assert_close, dot, largest, multiply, multiply_transposed, sandwich};
-use systems::random::{Random, web};
 
 /// Random systems off their constraints, small and beyond the dense limit of 24 rows, in 2D and 3D.
 fn webs() -> Vec<(System, State)> {
@@ -36,7 +33,8 @@ fn acceleration_of_C(terms: &Terms) -> Vec<f64> {
     Jqdd.iter().zip(&terms.acceleration_bias).map(|(a, b)| a + b).collect()
 }
 
-/// What roundoff may leave of C̈'s members: 1e-13 of their largest, |b|, |A| |λ| and |J| |q̈|, some dozens of roundings each.
+/// What roundoff may leave of C̈'s members: 1e-13 of their largest, |b|, |A| |λ| and |J| |q̈|, some dozens of roundings
+/// each.
 fn roundoff(terms: &Terms) -> f64 {
     let absolute = |x: &[f64]| x.iter().map(|x| x.abs()).collect::<Vec<_>>();
     let Al = multiply(&absolute(&terms.constraint_matrix.to_dense()), &absolute(&terms.multipliers));

@@ -1,16 +1,15 @@
-//! The measured order of every integrator is its declared order ± 0.1, on constrained motion with every sort of force: in
-//! position, velocity and multipliers, and for the energy account it keeps.
+//! The measured order of every integrator is its declared order ± 0.1, on constrained motion with every sort of force:
+//! in position, velocity and multipliers, and for the energy account it keeps.
 
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::difference;
 use qhat::{
     Dimension, Distance, Drag, Integrator, Particle, Settings, Simulation, Spring, State, System, Workspace, evaluate,
     step,
 };
-use systems::dense::difference;
 
-/// A double pendulum of unequal masses with drag and a damped spring: forces in q and in q̇, and a constraint force that
-/// matters, so that a method which misses the velocity by its impulse falls to order 1.
+/// A double pendulum of unequal masses with drag and a damped spring: forces in q and in q̇, and a constraint force
+/// that matters, so that a method which misses the velocity by its impulse falls to order 1.
 fn system() -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
@@ -30,8 +29,9 @@ const DURATION: f64 = 0.5;
 /// q, q̇, λ and the work booked after `steps` equal steps.
 fn run(integrator: Integrator, steps: usize) -> [Vec<f64>; 4] {
     let (system, mut state) = system();
-    // RATTLE then takes each frame in one substep: an error of almost 1 is allowed, and h is below what stability and the
-    // turning of the rods ask for. The report says so. Newton is driven to roundoff, far below the error that is measured.
+    // RATTLE then takes each frame in one substep: an error of almost 1 is allowed, and h is below what stability and
+    // the turning of the rods ask for. The report says so. Newton is driven to roundoff, far below the error that is
+    // measured.
     let settings = Settings {
         integrator,
         h: DURATION / steps as f64,
@@ -91,7 +91,8 @@ fn dopri5_is_of_order_five() {
 
 #[test]
 fn dop853_is_of_order_eight() {
-    // Between errors too large for the leading term and errors of roundoff (1e-15) lie only two doublings of order eight.
+    // Between errors too large for the leading term and errors of roundoff (1e-15) lie only two doublings of order
+    // eight.
     check(Integrator::Dop853, &[5, 10, 20], 0.8);
 }
 
@@ -110,8 +111,8 @@ fn bdf2_is_of_order_two() {
     check(Integrator::Bdf2, &[400, 800, 1600], 0.1);
 }
 
-/// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors their
-/// square. Substeps are chosen from an estimate, so the power is not exact.
+/// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors
+/// their square. Substeps are chosen from an estimate, so the power is not exact.
 #[test]
 fn rattle_follows_its_tolerance() {
     let error = |tolerance: f64| {

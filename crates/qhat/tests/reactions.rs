@@ -1,13 +1,10 @@
 //! The constraint force Q̂: it does no work on legal motion, changes no momentum, and has the sign that is promised.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, dot};
+use crate::systems::random::{Random, web};
 use qhat::{Dimension, Distance, DistanceForm, Nail, NailForm, Particle, PointForce, Settings, State, System};
 use qhat::{Terms, Workspace, evaluate, project};
-use systems::dense::{assert_all_close, assert_close, dot};
-use systems::random::{Random, web};
 
 /// Puts a random state onto C = 0 and Ċ = 0.
 fn legal(system: &System, state: &mut State) {
@@ -33,7 +30,8 @@ fn constraint_force_does_no_work_on_legal_motion() {
             tried += 1;
             let terms = evaluate(&system, &state);
             let power = dot(&terms.constraint_forces, &terms.velocities);
-            // Q̂·q̇ = λ·Ċ, and the projection leaves roundoff of speeds of about 1 m/s as Ċ; stiff trusses multiply it by 1e3.
+            // Q̂·q̇ = λ·Ċ, and the projection leaves roundoff of speeds of about 1 m/s as Ċ; stiff trusses multiply it
+            // by 1e3.
             assert_close("Q̂·q̇", power, 0.0, 1e-12 * size(&terms));
         }
     }
@@ -133,7 +131,7 @@ fn scalar_nail_carries_along_its_gradient_only() {
     builder
         .with_constraint("nail", Nail { particle: it, at: [0.0; 3], form: NailForm::Scalar })
         .force(systems::gravity());
-    builder.force(PointForce { particle: systems::id(0), force: [3.0, 0.0, 0.0] });
+    builder.force(PointForce { particle: crate::systems::id(0), force: [3.0, 0.0, 0.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
     // J = (0, −0.2), so λ = −mg/0.2; sideways nothing holds.

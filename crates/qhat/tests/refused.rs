@@ -1,8 +1,7 @@
-//! What is refused: numbers out of range, names that do not exist, motions that are lost. Every refusal is a typed error
-//! with a sentence that names the culprit, and the last good state stays.
+//! What is refused: numbers out of range, names that do not exist, motions that are lost. Every refusal is a typed
+//! error with a sentence that names the culprit, and the last good state stays.
 
-mod systems;
-
+use crate::systems;
 use qhat::{
     BodyError, BuildError, ConstraintError, Curve, Dimension, Distance, Drag, ExpressionError, Feedback, ForceError,
     GeometryError, Gravity, Integrator, MouseSpring, Nail, ParameterError, Particle, ParticleError, ParticleId,

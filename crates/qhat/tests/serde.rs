@@ -1,8 +1,7 @@
 //! The feature `serde`: what goes into JSON comes back the same.
 #![cfg(feature = "serde")]
 
-mod systems;
-
+use crate::systems;
 use qhat::{Event, EventKind, Feedback, Integrator, Settings, Simulation, StepReport, Warning, evaluate};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

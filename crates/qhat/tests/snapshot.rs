@@ -1,8 +1,7 @@
-//! Save, load, go on = go on, bit for bit, at every step: a State holds all that a restart needs, a Workspace nothing that
-//! changes a result.
+//! Save, load, go on = go on, bit for bit, at every step: a State holds all that a restart needs, a Workspace nothing
+//! that changes a result.
 
-mod systems;
-
+use crate::systems;
 use qhat::{Integrator, Settings, Simulation, State, System, Workspace, evaluate, step};
 
 fn bits(state: &State) -> Vec<u64> {

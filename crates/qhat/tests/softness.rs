@@ -1,15 +1,12 @@
-//! The softness dictionary: one step of each foreign scheme, written out plainly in its own letters, is one step with the
-//! canonical row, to rounding.
+//! The softness dictionary: one step of each foreign scheme, written out plainly in its own letters, is one step with
+//! the canonical row, to rounding.
 //!
-//! The foreign schemes are run on the smallest system that has a row: one mass on a line, C = x, J = 1, γ = 0, A = w, stepped
-//! velocity first. The source's two menus are the engine's own and are read off its terms.
+//! The foreign schemes are run on the smallest system that has a row: one mass on a line, C = x, J = 1, γ = 0, A = w,
+//! stepped velocity first. The source's two menus are the engine's own and are read off its terms.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::{assert_all_close, assert_close, multiply, solve};
 use qhat::{Feedback, Integrator, Simulation, SoftRow, Terms};
-use systems::dense::{assert_all_close, assert_close, multiply, solve};
 
 /// A mass [kg] at x [m] with v [m/s] under a force Q [N], and a step h [s].
 #[derive(Clone, Copy)]

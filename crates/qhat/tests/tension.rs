@@ -1,17 +1,16 @@
 //! Tension of ropes and struts: m g where a weight hangs or stands on one, nothing where it is slack.
 
-mod systems;
-
+use crate::systems::dense::assert_close;
+use crate::systems::{G, gravity, settings};
 use qhat::{
     Dimension, Distance, EventKind, Integrator, Limits, Nail, Particle, ParticleId, Settings, Simulation, System,
     SystemBuilder,
 };
-use systems::dense::assert_close;
-use systems::{G, gravity, settings};
 
 const MASS: f64 = 3.0;
 
-/// A weight at a place beside a held particle, on a rope or a strut, after a frame: what stands at a limit acts from the first step on.
+/// A weight at a place beside a held particle, on a rope or a strut, after a frame: what stands at a limit acts from
+/// the first step on.
 fn after_a_frame(at: [f64; 2], limits: impl Fn(ParticleId, ParticleId) -> Limits) -> Simulation {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
@@ -53,7 +52,8 @@ fn a_rope_that_starts_taut_pulls_from_the_start() {
     assert_close("tension", simulation.tension()[0], MASS * G, 1e-12 * MASS * G);
 }
 
-/// A pendulum on a rope or a strut, let go level, carries 3 m g cos a, and breaks at twice its weight where a rod would.
+/// A pendulum on a rope or a strut, let go level, carries 3 m g cos a, and breaks at twice its weight where a rod
+/// would.
 #[test]
 fn what_breaks_is_slack_from_then_on() {
     let limits: [fn(ParticleId, ParticleId) -> Limits; 2] =

@@ -1,7 +1,6 @@
 //! The same bits on any number of threads.
 
-mod systems;
-
+use crate::systems;
 use qhat::{Integrator, Settings, Simulation, State, StepReport, run_all, step_all};
 use rayon::ThreadPoolBuilder;
 

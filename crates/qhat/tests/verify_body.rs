@@ -1,14 +1,10 @@
 //! Bodies of particles and rods against rigid bodies: their moments, the compound pendulum, Euler's equations.
 
-#![allow(non_snake_case, reason = "the letters of the derivations: S, I, R")]
-
-mod systems;
-
+use crate::systems::dense::{assert_all_close, assert_close};
+use crate::systems::{self, gravity, swing};
 use qhat::{
     Body, BodyError, Dimension, Distance, Nail, Particle, ParticleId, Relation, Settings, Simulation, SystemBuilder,
 };
-use systems::dense::{assert_all_close, assert_close};
-use systems::{gravity, swing};
 
 /// m, c and Σ m (x − c)(x − c)ᵀ of particles.
 fn moments(points: &[[f64; 3]], masses: &[f64]) -> (f64, [f64; 3], [[f64; 3]; 3]) {
@@ -263,8 +259,8 @@ fn a_free_body_tumbles_as_euler_says() {
         let (R, _) = exact;
         for (i, x) in body.points.iter().enumerate() {
             let expected: [f64; 3] = std::array::from_fn(|k| R[k][0] * x[0] + R[k][1] * x[1] + R[k][2] * x[2]);
-            // The tolerance of 1e-10 a substep, grown by the instability of the middle axis: its rate is
-            // ω √((I₂ − I₁)(I₃ − I₂)/(I₁ I₃)) = 2.7/s from a lean of 0.002 until it has turned over, e⁶. Measured: 4e-10.
+            // The tolerance of 1e-10 a substep, grown by the instability of the middle axis: its rate is ω √((I₂ −
+            // I₁)(I₃ − I₂)/(I₁ I₃)) = 2.7/s from a lean of 0.002 until it has turned over, e⁶. Measured: 4e-10.
             assert_all_close("place", &simulation.state().positions()[3 * i..][..3], &expected, 1e-8);
         }
         assert_all_close("angular momentum", &momentum(&simulation), &start, 1e-11);

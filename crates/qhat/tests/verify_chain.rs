@@ -1,10 +1,8 @@
 //! Chains and frames at rest against statics: every tension has a closed form.
 
-mod systems;
-
+use crate::systems::dense::{assert_close, largest};
+use crate::systems::{self, G};
 use qhat::{Dimension, Distance, Integrator, Particle, Simulation, State, System, evaluate};
-use systems::G;
-use systems::dense::{assert_close, largest};
 
 /// Masses of all sizes hung below each other, and the tension of every link: the weight below it.
 fn hanging(links: usize, dimension: Dimension) -> (System, State, Vec<f64>) {
@@ -60,8 +58,8 @@ fn a_hanging_chain_stays_at_rest() {
     }
 }
 
-/// A chain whose equal weights hang at equal spacings is the parabola of a suspension bridge: the slope grows by m g/H from
-/// link to link, and link k carries H √(1 + slope²).
+/// A chain whose equal weights hang at equal spacings is the parabola of a suspension bridge: the slope grows by m g/H
+/// from link to link, and link k carries H √(1 + slope²).
 #[test]
 fn funicular_chain_is_in_equilibrium() {
     const LINKS: usize = 30;

@@ -1,9 +1,8 @@
 //! Conservation: energy, momentum, and the account of what enters and leaves.
 
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::assert_close;
 use qhat::{Feedback, Gravity, Integrator, Settings, Simulation, State, System};
-use systems::dense::assert_close;
 
 fn tight(tolerance: f64) -> Settings {
     Settings { tolerance, constraint_tolerance: 1e-13, ..systems::settings(Integrator::Rattle, 1.0 / 60.0) }
@@ -27,8 +26,8 @@ fn double_pendulum_keeps_its_energy() {
     assert!(simulation.energy().kinetic > 0.1, "it still swings");
 }
 
-/// A chain of 100 links let go from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. One setting, the
-/// default, must do for both.
+/// A chain of 100 links let go from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. One setting,
+/// the default, must do for both.
 #[test]
 fn whipping_chains_keep_length_and_energy_under_dop853() {
     for heavy in [1.0, 1000.0] {
@@ -132,8 +131,8 @@ fn centre_of_mass_falls_freely() {
 #[test]
 fn damped_motion_closes_the_account() {
     for (integrator, h, allowed) in [
-        // RATTLE and its trapezoidal account are of order 2: 4e-4 at the tolerance of 1e-4, smaller by its ⅔ power. Were
-        // only one of them of order 1, 3e-5 would be left.
+        // RATTLE and its trapezoidal account are of order 2: 4e-4 at the tolerance of 1e-4, smaller by its ⅔ power.
+        // Were only one of them of order 1, 3e-5 would be left.
         (Integrator::Rattle, 1.0 / 60.0, 4e-6),
         // Booked with the method's own weights; (hω)⁴ at the whip's 30 rad/s.
         (Integrator::Rk4, 1e-3, 1e-6),
@@ -182,7 +181,7 @@ fn mouse_spring_work_is_booked() {
     let mut simulation = Simulation::new(system, state, tight(1e-6)).unwrap();
     let start = simulation.energy().balance();
     assert_eq!(simulation.state().work().external, 0.0);
-    let tip = systems::id(2);
+    let tip = crate::systems::id(2);
     simulation.grab(tip, [1.6, 1.8, 0.0]).unwrap();
     // Taking hold one metre away stretches the spring: ½ ks · 1².
     let stiffness = simulation.mouse().unwrap().stiffness;
@@ -205,7 +204,8 @@ fn mouse_spring_work_is_booked() {
     assert!(simulation.energy().work.dissipation < 0.0, "the spring is damped");
 }
 
-/// What feedback and elasticity do through Q̂ is booked as stabilization: the account of explicit Euler closes to its order.
+/// What feedback and elasticity do through Q̂ is booked as stabilization: the account of explicit Euler closes to its
+/// order.
 #[test]
 fn stabilization_work_is_booked() {
     let missing = |h: f64| {

@@ -1,7 +1,6 @@
 //! What a user writes moves as what is built in, closes its energy account, and ends in an error where it has no value.
 
-mod systems;
-
+use crate::systems;
 use qhat::{
     BuildError, Constraint, Dimension, Distance, DistanceForm, Drag, Expression, ExpressionConstraint, ExpressionForce,
     ExpressionPotential, Feedback, Force, Gravity, Integrator, Nail, NailForm, Particle, Purpose, Scope, Settings,
@@ -39,7 +38,8 @@ fn particles() -> SystemBuilder {
     builder
 }
 
-/// The chain, with a last link that is built in: the length of the system, in which errors are measured, is then the same.
+/// The chain, with a last link that is built in: the length of the system, in which errors are measured, is then the
+/// same.
 fn chain(constraints: Vec<Constraint>, forces: Vec<Force>) -> SystemBuilder {
     let mut builder = particles();
     for (k, constraint) in constraints.into_iter().enumerate() {
@@ -75,9 +75,10 @@ fn missing(builder: SystemBuilder, integrator: Integrator, tolerance: f64, h: f6
     (end.energy().balance() - begin.energy().balance()).abs()
 }
 
-/// How near twins stay over a second. dop853 at a tolerance of 1e-12 follows the motion itself, to some 1e-12 a substep. The others
-/// have errors of their own, equal for twins that take equal steps: what differs is where their Newton solves stop, some 1e-13 m in
-/// each of 100 steps, which is 1e-11 m/s in a velocity and up to 1e-9 m after a second.
+/// How near twins stay over a second. dop853 at a tolerance of 1e-12 follows the motion itself, to some 1e-12 a
+/// substep. The others have errors of their own, equal for twins that take equal steps: what differs is where their
+/// Newton solves stop, some 1e-13 m in each of 100 steps, which is 1e-11 m/s in a velocity and up to 1e-9 m after a
+/// second.
 const TWINS: [(Integrator, f64, f64); 4] = [
     (Integrator::Dop853, 1e-12, 1e-10),
     (Integrator::Bdf2, 1e-4, 2e-9),
@@ -157,8 +158,9 @@ fn forces_as_expressions_move_as_the_built_in_ones() {
         };
         chain(held(), (0..4).map(of).collect())
     };
-    // A step of bdf2 and implicit ends with its velocity put onto Ċ = 0 in the metric M + h² K of Newton's matrix. A damped spring
-    // leaves a part of its K out that the expressions have: a difference of h² K/M of what that changes, itself some h².
+    // A step of bdf2 and implicit ends with its velocity put onto Ċ = 0 in the metric M + h² K of Newton's matrix. A
+    // damped spring leaves a part of its K out that the expressions have: a difference of h² K/M of what that changes,
+    // itself some h².
     let by_components = TWINS.map(|(integrator, tolerance, allowed)| match integrator {
         Integrator::Bdf2 | Integrator::Implicit => (integrator, tolerance, 1e-5),
         _ => (integrator, tolerance, allowed),
@@ -177,8 +179,8 @@ fn driven() -> SystemBuilder {
     let mut builder = particles();
     builder.with_constraint("x", row("p0.x")).constraint("y", row("p0.y"));
     builder.constraint("driven", row("dist(p0, p1) - (1 + 0.1*sin(3*t))"));
-    // Consistent with the rate of the length, 0.3 m/s at the start: p1 is pushed by the projection, and Euler's methods start
-    // from rest with Ċ off by as much; what holds is the acceleration.
+    // Consistent with the rate of the length, 0.3 m/s at the start: p1 is pushed by the projection, and Euler's methods
+    // start from rest with Ċ off by as much; what holds is the acceleration.
     builder.force(GRAVITY);
     builder
 }

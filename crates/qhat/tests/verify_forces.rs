@@ -1,16 +1,13 @@
 //! The library of forces against closed forms, and its energy account.
 
-#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
-
-mod systems;
-
+use crate::systems;
+use crate::systems::dense::assert_close;
+use crate::systems::random::{Random, dimension};
 use qhat::{
     Actuator, AirDrag, CentralForce, CubicSpring, Dimension, Distance, Facet, Force, Gas, HarmonicForce, Integrator,
     InverseSquare, Particle, ParticleId, Pressure, Settings, Simulation, State, System, TorsionSpring, evaluate,
 };
 use std::f64::consts::PI;
-use systems::dense::assert_close;
-use systems::random::{Random, dimension};
 
 fn simulation((system, state): (System, State), integrator: Integrator, tolerance: f64, h: f64) -> Simulation {
     Simulation::new(system, state, Settings { tolerance, ..systems::settings(integrator, h) }).unwrap()
@@ -115,7 +112,8 @@ fn a_torsion_pendulum_swings_in_its_period() {
     }
 }
 
-/// m ẍ = f cos(ω t + φ), and the work that it does. A free particle goes in lanes: what they freeze within a frame shows here.
+/// m ẍ = f cos(ω t + φ), and the work that it does. A free particle goes in lanes: what they freeze within a frame
+/// shows here.
 #[test]
 fn a_harmonic_force_follows_the_time() {
     for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Rk4] {
@@ -178,7 +176,8 @@ fn a_closed_mesh_is_pushed_nowhere() {
     }
 }
 
-/// A loop of equal rods under pressure comes to rest as the regular polygon; here by the method that solves with the tangents.
+/// A loop of equal rods under pressure comes to rest as the regular polygon; here by the method that solves with the
+/// tangents.
 #[test]
 fn a_loop_under_pressure_becomes_regular() {
     let (n, r, p) = (12, 0.3, 40.0);
@@ -207,8 +206,9 @@ fn a_loop_under_pressure_becomes_regular() {
     }
 }
 
-/// A regular polygon of n particles of mass m, let go at the radius R, holds A = k r², k = ½ n sin(2π/n). With γ = 2 the force on each, 2 k r p/n, is as r⁻³:
-/// r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀) has gone into motion.
+/// A regular polygon of n particles of mass m, let go at the radius R, holds A = k r², k = ½ n sin(2π/n). With γ = 2
+/// the force on each, 2 k r p/n, is as r⁻³: r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀) has
+/// gone into motion.
 #[test]
 fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
     let (n, m, radius, p) = (7, 0.3, 0.8, 2.0);
@@ -241,8 +241,8 @@ fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
     }
 }
 
-/// The methods that solve at the end of the step use its tangent, which is dense: pressed to a hundredth of its volume and let go, a gas settles
-/// where its pressure meets the weight, p₀ (A₀/A)^γ w = m g.
+/// The methods that solve at the end of the step use its tangent, which is dense: pressed to a hundredth of its volume
+/// and let go, a gas settles where its pressure meets the weight, p₀ (A₀/A)^γ w = m g.
 #[test]
 fn a_piston_settles_on_its_gas() {
     for integrator in [Integrator::Implicit, Integrator::Bdf2] {

@@ -1,17 +1,15 @@
 //! Closed forms of gears and clusters; those of pulleys, motors and ratios are in the shipped scenes.
 
-mod systems;
-
+use crate::systems::random::Random;
+use crate::systems::settings;
 use qhat::{Dimension, Distance, Gears, Integrator, Particle, Simulation, System, evaluate, rigid_rods};
-use systems::random::Random;
-use systems::settings;
 
 fn unit(angle: f64) -> [f64; 2] {
     [libm::cos(angle), libm::sin(angle)]
 }
 
-/// A sun of 30 teeth that stands, a carrier, and a planet of 15: by Willis, (ω_planet − ω_carrier) 15 = (ω_carrier − 0) 30, so the planet turns
-/// three times a turn of the carrier. With no force on it the carrier keeps its speed.
+/// A sun of 30 teeth that stands, a carrier, and a planet of 15: by Willis, (ω_planet − ω_carrier) 15 = (ω_carrier − 0)
+/// 30, so the planet turns three times a turn of the carrier. With no force on it the carrier keeps its speed.
 #[test]
 fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     let mut builder = System::builder(Dimension::Two);
@@ -46,7 +44,8 @@ fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     }
 }
 
-/// Random clusters are held by the fewest rods: as many as their degrees of freedom less those of a rigid body, all independent.
+/// Random clusters are held by the fewest rods: as many as their degrees of freedom less those of a rigid body, all
+/// independent.
 #[test]
 fn clusters_take_the_fewest_rods_and_hold() {
     let mut random = Random::new(9);
@@ -65,7 +64,8 @@ fn clusters_take_the_fewest_rods_and_hold() {
             for (k, &[a, b]) in rods.iter().enumerate() {
                 let square = |k: usize| (raised[a][k] - raised[b][k]) * (raised[a][k] - raised[b][k]);
                 let length = (square(0) + square(1) + square(2)).sqrt();
-                builder.constraint(format!("rod{k}"), Distance::new(systems::id(a), systems::id(b), length));
+                builder
+                    .constraint(format!("rod{k}"), Distance::new(crate::systems::id(a), crate::systems::id(b), length));
             }
             let (system, state) = builder.build().unwrap();
             assert_eq!(evaluate(&system, &state).rank, Some(rods.len()), "none is superfluous");

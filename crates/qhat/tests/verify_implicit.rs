@@ -1,15 +1,13 @@
-//! Methods that solve at the end of the step: heavy loads and stiff springs at a frame of 1/60 s, where every explicit method
-//! fails; buckling, nets, redundant rows; rods that give way.
+//! Methods that solve at the end of the step: heavy loads and stiff springs at a frame of 1/60 s, where every explicit
+//! method fails; buckling, nets, redundant rows; rods that give way.
 
-mod systems;
-
+use crate::systems::dense::assert_close;
+use crate::systems::{self, FRAME};
 use qhat::{
     Dimension, Distance, Drag, Gravity, Integrator, Particle, Settings, Simulation, Spring, State, StepReport, System,
     Warning,
 };
-use systems::dense::assert_close;
 
-const FRAME: f64 = 1.0 / 60.0;
 const IMPLICIT: [Integrator; 2] = [Integrator::Implicit, Integrator::Bdf2];
 
 fn start((system, state): (System, State), integrator: Integrator, h: f64) -> Simulation {
@@ -128,9 +126,9 @@ fn a_cloth_hangs_and_loses_energy() {
     assert!(total.max_relative_length_error <= 1e-10, "{total:?}");
 }
 
-/// Two rods that stand on a pin under a load: their geometric stiffness is negative. The knee, pushed aside by a hair, must
-/// give to that side. (s = √(2T/(mL)) is 9/s here. Backward Euler grows by 1/(1 − h s) a step, so from h s = 1 on it would
-/// give to the other side.)
+/// Two rods that stand on a pin under a load: their geometric stiffness is negative. The knee, pushed aside by a hair,
+/// must give to that side. (s = √(2T/(mL)) is 9/s here. Backward Euler grows by 1/(1 − h s) a step, so from h s = 1 on
+/// it would give to the other side.)
 #[test]
 fn a_column_buckles_to_the_side_it_is_pushed() {
     for push in [1e-4, -1e-4] {
@@ -189,7 +187,8 @@ fn a_redundant_brace_carries_as_without() {
     }
 }
 
-/// A parallelogram linkage driven through the position where all its bars lie on one line, and rank drops for an instant.
+/// A parallelogram linkage driven through the position where all its bars lie on one line, and rank drops for an
+/// instant.
 #[test]
 fn a_parallelogram_goes_through_flat() {
     for integrator in IMPLICIT {
@@ -258,8 +257,8 @@ fn a_compliant_rod_is_a_spring() {
         // The same sums in another order: roundoff.
         (Integrator::Rk4, 1e-3, 1e-11),
         (Integrator::Rattle, 0.01, 1e-11),
-        // The same equations; Newton's method factors at other iterates, and velocities are projected with what it factored
-        // last: a thousandth of what the methods themselves are off by.
+        // The same equations; Newton's method factors at other iterates, and velocities are projected with what it
+        // factored last: a thousandth of what the methods themselves are off by.
         (Integrator::Implicit, 1.0 / 240.0, 1e-4),
         (Integrator::Bdf2, 1.0 / 240.0, 1e-4),
     ] {
@@ -297,7 +296,8 @@ fn a_stiff_spring_does_not_bound_the_step() {
             assert!(report.max_relative_length_error <= 1e-10, "{integrator}: {report:?}");
             let q = simulation.state().positions();
             let length = systems::dense::norm(&[q[4] - q[2], q[5] - q[3]]);
-            // The pull is some 0.1 N, 1e-10 m of this spring; the force is solved to 1e-10 m of the masses' own inertia.
+            // The pull is some 0.1 N, 1e-10 m of this spring; the force is solved to 1e-10 m of the masses' own
+            // inertia.
             assert!((length - 0.5).abs() < 1e-8, "{integrator}: {length}");
         }
     }
@@ -314,8 +314,8 @@ fn strong_drag_is_stable() {
     }
 }
 
-/// Two iterations a frame are too few for a whipping chain: every frame that was not solved says what it is off by, and the
-/// chain hangs together all the same.
+/// Two iterations a frame are too few for a whipping chain: every frame that was not solved says what it is off by, and
+/// the chain hangs together all the same.
 #[test]
 fn a_spent_budget_is_reported_and_holds() {
     for integrator in IMPLICIT {

@@ -1,11 +1,9 @@
-//! The pendulum against its closed forms: the period by the complete elliptic integral, the tension by energy conservation.
+//! The pendulum against its closed forms: the period by the complete elliptic integral, the tension by energy
+//! conservation.
 
-mod systems;
-
+use crate::systems::dense::assert_close;
+use crate::systems::{self, G, swing};
 use qhat::{Integrator, Settings, Simulation};
-use systems::G;
-use systems::dense::assert_close;
-use systems::swing;
 
 fn simulation(angle: f64, settings: Settings) -> Simulation {
     let (system, state) = systems::pendulum(-angle);
@@ -16,8 +14,9 @@ fn simulation(angle: f64, settings: Settings) -> Simulation {
 fn period_is_that_of_the_elliptic_integral() {
     for amplitude in [0.1, 1.0, 2.0, 3.0] {
         let period = swing::period(1.0, amplitude);
-        // RK4: the phase is good to (hω)⁴/120 < 1e-12 with ω up to 6 rad/s, but the circle is left by errors of that size
-        // a step which grow with t²: below 1e-10 over five swings, and more where the bob nearly stands still on top.
+        // RK4: the phase is good to (hω)⁴/120 < 1e-12 with ω up to 6 rad/s, but the circle is left by errors of that
+        // size a step which grow with t²: below 1e-10 over five swings, and more where the bob nearly stands still on
+        // top.
         let rk4 = simulation(amplitude, systems::settings(Integrator::Rk4, 2.5e-4));
         assert_close("rk4", swing::measured(rk4, 2, 5), period, if amplitude < 2.5 { 1e-10 } else { 1e-8 });
         // RATTLE: (hω)²/24 of the period, ω² at most 4 g/L = 39/s²: 2e-6 of it at h = 1 ms.

@@ -1,12 +1,10 @@
 //! Springs, drag and free flight against their closed forms.
 
-mod systems;
-
+use crate::systems::dense::assert_close;
+use crate::systems::{self, G};
 use qhat::{
     Dimension, Drag, Integrator, MouseSpring, Particle, PointForce, Settings, Simulation, Spring, State, System,
 };
-use systems::G;
-use systems::dense::assert_close;
 
 const MASS: f64 = 2.0;
 const STIFFNESS: f64 = 50.0;
@@ -90,8 +88,8 @@ fn spring_sags_by_weight_over_stiffness() {
     assert_eq!(simulation.state().velocities()[3], 0.0);
 }
 
-/// About where it hangs, a pendulum on a spring bounces with √(ks/m) and swings as one on a rod of the length l that it hangs at, with
-/// √(g/l). Its scene, `elastic-pendulum`, takes the first twice the second.
+/// About where it hangs, a pendulum on a spring bounces with √(ks/m) and swings as one on a rod of the length l that it
+/// hangs at, with √(g/l). Its scene, `elastic-pendulum`, takes the first twice the second.
 #[test]
 fn a_pendulum_on_a_spring_bounces_and_swings() {
     let l = REST + MASS * G / STIFFNESS;
@@ -111,7 +109,8 @@ fn a_pendulum_on_a_spring_bounces_and_swings() {
             [state.positions()[2], -l - state.positions()[3]]
         })
     };
-    // In parts of the amplitude: what it adds to the frequencies, of its first order at most as it bends the path, is 1e-5.
+    // In parts of the amplitude: what it adds to the frequencies, of its first order at most as it bends the path, is
+    // 1e-5.
     let cosine = [0.0, -1.0, 0.0, 1.0];
     let swing = at_quarters(small, 0.0, (G / l).sqrt());
     let bounce = at_quarters(0.0, small, (STIFFNESS / MASS).sqrt());

@@ -1,4 +1,4 @@
-// The address as the place where a scene is named.
+// The name of a scene in the address of the page.
 
 /** The scene named by `?scene=` or `#scene=`, or null where the address names none. */
 export function sceneInAddress(address: { search: string; hash: string }): string | null {

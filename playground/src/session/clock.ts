@@ -1,5 +1,5 @@
-// Turns wall time into steps of h. Simulated time follows wall time × speed; what the machine cannot keep up with is
-// given up at once and said, instead of being owed: a debt of steps makes the next frame later still.
+// Turns wall time into steps of h. Simulated time follows wall time × speed. Steps for which a frame has no time are
+// dropped and the page says so, because steps owed to the next frame would make the next frame later still.
 
 export interface ClockReading {
   /** steps taken in this animation frame */
@@ -11,7 +11,7 @@ export interface ClockReading {
 /** The wall time a frame may spend stepping; the rest of 16.7 ms is for drawing and the browser. */
 export const STEP_BUDGET_MS = 10;
 
-/** A frame that comes later than this was not computed slowly, the page was hidden or stopped: time stood still. */
+/** A frame later than this, in s, comes from a page that was hidden and not from slow steps: the rest is dropped. */
 const LONGEST_FRAME_S = 0.1;
 
 /** Weight of the newest frame in the running ratio: about half a second of memory at 60 frames a second. */
@@ -29,14 +29,14 @@ export class RealTimeClock {
     private readonly budgetMs = STEP_BUDGET_MS,
   ) {}
 
-  /** Simulated seconds per wall second over the last half second, as a part of what was asked; 1 is real time. */
+  /** Simulated seconds per wall second over the last half second, as a part of the speed asked for; 1 is on time. */
   get ratio(): number {
     return this.asked > 0 ? this.done / this.asked : 1;
   }
 
   /** True where the page cannot hold the speed it was asked for. */
   get late(): boolean {
-    // 5 % is below what an eye notices and above what one step more or less in a frame makes
+    // an eye does not notice 5 %, and one step more or less in a frame makes less than 5 %
     return this.asked > 0 && this.ratio < 0.95;
   }
 

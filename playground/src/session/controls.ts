@@ -1,7 +1,7 @@
-// What each control is called, what it does in one sentence, in which unit, over which range.
+// Each control: its name, its effect in one sentence, its unit and its range.
 
 import type { Controls } from '../engine';
-import type { LogRange } from './scale';
+import type { Scale } from './scale';
 
 export type NumberControl = 'gravity' | 'drag' | 'ks' | 'kd' | 'diagonal_drag' | 'elasticity' | 'h';
 
@@ -11,10 +11,8 @@ export interface ControlSpec {
   symbol: string;
   unit: string;
   sentence: string;
-  scale:
-    | ({ kind: 'log' } & LogRange & { zero: boolean })
-    | { kind: 'linear'; from: number; to: number; step: number };
-  /** works only in integrators that hold the constraints by feedback */
+  scale: Scale;
+  /** has an effect only under integrators that hold the constraints by feedback */
   feedback: boolean;
 }
 
@@ -25,8 +23,7 @@ export const MENUS: readonly ControlSpec[] = [
     label: 'Diagonal drag',
     symbol: 'ε',
     unit: 'of A',
-    sentence:
-      'Adds ε to the diagonal of A: λ exists even where A is singular, and the constraints give a little.',
+    sentence: 'Adds ε to the diagonal of A: λ exists even where A is singular, and the constraints soften.',
     scale: { kind: 'log', from: 1e-6, to: 100, zero: true },
     feedback: true,
   },
@@ -68,7 +65,7 @@ export const FEEDBACK: readonly ControlSpec[] = [
     label: 'Feedback stiffness',
     symbol: 'ks',
     unit: '1/s²',
-    sentence: 'Pulls a violated constraint back, as a spring of C̈ + kd Ċ + ks C = 0.',
+    sentence: 'Pulls a violated constraint back like a spring: ks in C̈ + kd Ċ + ks C = 0.',
     scale: { kind: 'log', from: 0.1, to: 1e5, zero: true },
     feedback: true,
   },
@@ -77,7 +74,7 @@ export const FEEDBACK: readonly ControlSpec[] = [
     label: 'Feedback damping',
     symbol: 'kd',
     unit: '1/s',
-    sentence: 'Damps that pull; explicit Euler needs ks·h < kd.',
+    sentence: 'Damps the pull of ks; explicit Euler needs ks·h < kd.',
     scale: { kind: 'log', from: 0.1, to: 1e3, zero: true },
     feedback: true,
   },
@@ -94,27 +91,28 @@ export const STEP: ControlSpec = {
 };
 
 export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
-  auto: 'dop853 where a frame can be followed in time, bdf2 where the motion is too stiff for that.',
-  euler:
-    'The source’s method: the force now, held over the whole step. Drifts off the constraints and gains energy.',
+  auto: 'dop853, or bdf2 where the motion is so stiff that dop853 cannot finish a frame in time.',
+  euler: 'The source’s method: the force at the start acts over the whole step. It drifts and gains energy.',
   'symplectic-euler':
-    'New velocity first, then positions with it: the energy stays near, the constraints still drift.',
+    'Velocities first, then positions with the new velocities: energy stays close, the constraints still drift.',
   rk4: 'Four force evaluations a step: small drift, never corrected without feedback.',
   rattle: 'Projects positions and velocities onto the constraints at every step: no drift to correct.',
   dopri5:
-    'Order five with substeps of its own choosing, projected after each: accurate and cheap for small systems.',
-  dop853: 'Order eight with substeps of its own choosing, projected after each: the most accurate one here.',
-  implicit: 'Backward Euler solved at the end of the step: takes any load at any h, and loses energy.',
-  bdf2: 'Order two, solved at the end of the step: takes any load at any h, and loses far less energy.',
+    'Order five with adaptive substeps, projected after each substep: accurate and cheap for small systems.',
+  dop853:
+    'Order eight with adaptive substeps, projected after each substep: the most accurate integrator here.',
+  implicit: 'Backward Euler: stable under any load at any h, and loses energy.',
+  bdf2: 'Backward differences of order two: stable under any load at any h, and loses far less energy.',
 };
 
 export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {
-  mixed: 'This scene writes each constraint in its own form; choosing one here changes them all.',
-  modern: 'C = |d| − r and x − p: λ is a force in newtons and a nail holds.',
-  classic: 'The source’s C = dᵀd − r² and |x − p|², whose gradient vanishes where the nail must hold.',
+  mixed: 'This scene mixes both forms; a choice here changes all constraints.',
+  modern: 'C = |d| − r and x − p: λ is a force in newtons, and the nail holds.',
+  classic:
+    'The source’s C = dᵀd − r² and |x − p|², whose gradient vanishes where the nail holds its particle.',
 };
 
-/** Gravity as one signed number along the direction the scene pulls in. */
+/** Gravity as one signed number along the direction in which the scene's own gravity pulls. */
 export function gravitySize(gravity: readonly number[], down: readonly number[]): number {
   // + 0 turns −0, which a weightless scene would show, into 0
   return gravity.reduce((sum, component, k) => sum + component * down[k], 0) + 0;

@@ -1,4 +1,4 @@
-// What the plots show: the last stretch of simulated time, in a ring of fixed size.
+// The data of the plots: samples of the last stretch of simulated time, in a ring of fixed size.
 
 /** One value per trace, at one time; NaN where a trace has no value (the ghost, when there is none). */
 export type Sample = readonly number[];

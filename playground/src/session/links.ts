@@ -1,16 +1,11 @@
-// Links in words: what a person calls one, and how long it may be.
+// Rods, ropes and struts: their lengths in words, and the shapes that are left when links break.
 
-import type { Link, Mark } from '../engine';
+import type { Link, LinkShape, Shape } from '../engine';
 import { format } from './numbers';
 
-/** It holds one length. */
-export function isRod({ shortest, longest }: Link): boolean {
-  return shortest === longest;
-}
-
-export function nameOf(link: Link): 'rod' | 'rope' | 'strut' {
-  if (isRod(link)) return 'rod';
-  return link.shortest === null ? 'rope' : 'strut';
+/** A rod has one length; ropes and struts have limits. */
+export function isRod({ kind }: LinkShape): boolean {
+  return kind === 'rod';
 }
 
 export function lengthsOf({ shortest, longest }: Link): string {
@@ -20,10 +15,8 @@ export function lengthsOf({ shortest, longest }: Link): string {
   return `${format(shortest)} m to ${format(longest)} m`;
 }
 
-/** The marks that are left when the links at these places are broken. */
-export function unbroken(marks: Mark[], links: readonly Link[], broken: ReadonlySet<number>): Mark[] {
-  if (broken.size === 0) return marks;
-  const gone = new Set([...broken].map((place) => `${links[place].a} ${links[place].b}`));
-  const isLink = ({ kind }: Mark) => kind === 'rope' || kind === 'strut';
-  return marks.filter((mark) => !isLink(mark) || !gone.has(mark.particles.join(' ')));
+/** The shapes without the broken links; `broken` has the places of these links. */
+export function unbroken(shapes: Shape[], broken: ReadonlySet<number>): Shape[] {
+  if (broken.size === 0) return shapes;
+  return shapes.filter(({ link }) => link === null || !broken.has(link.place));
 }

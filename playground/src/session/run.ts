@@ -1,18 +1,18 @@
-// One simulation that is stepped until it says it cannot go on; then it keeps its last good state and the reason.
+// One simulation, stepped until the engine refuses a step; then the run keeps its last good state and the reason.
 
 import { type Controls, defaultFrameWork, EngineError, Simulation, type StepReport } from '../engine';
 
 /**
- * Row solves a frame of auto on the page. The engine's own default waits up to a tenth of a second a frame and more,
- * which is right for a file that is written once; a hand on the mouse needs its frame in sixteen milliseconds.
+ * Row solves a frame of auto on the page. The engine's default takes a tenth of a second a frame and more, which suits
+ * a run that is written to a file; a person at the mouse needs a frame in sixteen milliseconds.
  */
 const FRAME_WORK = 1_000_000;
 
 export class Run {
-  /** why it stopped, in the engine's words; null while it goes */
+  /** why the run stopped, in the engine's words; null while it can go on */
   stopped: EngineError | null = null;
   report: StepReport | null = null;
-  /** T + V less what came in, at the start, J: what is missing later is measured from here */
+  /** T + V less the energy that came in, at the start, in J: missing energy is counted from this balance */
   private balance: number;
 
   private constructor(readonly simulation: Simulation) {
@@ -29,7 +29,7 @@ export class Run {
   static open(text: string, sourceName: string): Run {
     const simulation = new Simulation(text, sourceName);
     const controls = simulation.controls();
-    // a scene that sets its own has its reasons
+    // a limit that the scene sets stays
     if (controls.frame_work === defaultFrameWork()) {
       simulation.setControls({ ...controls, frame_work: FRAME_WORK });
     }
@@ -70,7 +70,7 @@ export class Run {
       this.simulation.reset();
       this.balance = this.simulation.energy().balance;
     } catch (error) {
-      // a start that the integrator chosen since cannot make consistent
+      // the integrator that was chosen since cannot make this start consistent
       if (!(error instanceof EngineError)) throw error;
       this.stopped = error;
     }

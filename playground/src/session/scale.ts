@@ -1,4 +1,4 @@
-// The logarithmic slider that also reaches zero: its leftmost tenth is one stop, 0, and the rest covers decades evenly.
+// The sliders: linear, or logarithmic with zero at the left end and the decades evenly over the rest.
 
 export interface LogRange {
   /** the smallest value that is not zero */
@@ -6,8 +6,9 @@ export interface LogRange {
   to: number;
 }
 
-/** Slider positions run from 0 to this many ticks. */
+/** The position at the right end of a logarithmic slider; the left end is 0. */
 export const TICKS = 1000;
+/** Positions left of this one are the value 0: wide enough to hit. */
 const ZERO_TICKS = 60;
 
 export function toTick(value: number, range: LogRange): number {
@@ -17,10 +18,37 @@ export function toTick(value: number, range: LogRange): number {
   return Math.round(ZERO_TICKS + part * (TICKS - ZERO_TICKS));
 }
 
-/** Two digits: a slider has no more to say, the number beside it takes any. */
+/** Rounded to two digits, as fine as a slider is; the number beside the slider takes any value. */
 export function fromTick(tick: number, range: LogRange): number {
   if (tick < ZERO_TICKS) return 0;
   const part = (tick - ZERO_TICKS) / (TICKS - ZERO_TICKS);
   const value = range.from * (range.to / range.from) ** part;
   return Number(value.toPrecision(2));
+}
+
+export type Scale =
+  | ({ kind: 'log' } & LogRange & { zero: boolean })
+  | { kind: 'linear'; from: number; to: number; step: number };
+
+export interface Slider {
+  /** positions of the left and the right end */
+  low: number;
+  high: number;
+  step: number;
+  position(value: number): number;
+  value(position: number): number;
+}
+
+export function sliderOf(scale: Scale): Slider {
+  if (scale.kind === 'linear') {
+    const same = (number: number) => number;
+    return { low: scale.from, high: scale.to, step: scale.step, position: same, value: same };
+  }
+  return {
+    low: scale.zero ? 0 : toTick(scale.from, scale),
+    high: TICKS,
+    step: 1,
+    position: (value) => toTick(value, scale),
+    value: (position) => fromTick(position, scale),
+  };
 }

@@ -1,9 +1,6 @@
-// Which scene the page opens: the address, the command that serves the page, or the default.
+// Where the text of a scene comes from: the engine's own scenes, or the command that serves the page.
 
 import { type Shipped, shippedScenes } from '../engine';
-
-/** The first thing a visitor sees: alive at once, and asking to be pulled. */
-export const DEFAULT_SCENE = 'strandbeest';
 
 export interface SceneSource {
   /** the name in the address; null for a scene that came from the command */
@@ -21,17 +18,10 @@ export function fromShipped({ name, text }: Shipped): SceneSource {
   return { name, fileName: `${name}.toml`, text };
 }
 
-/** The scenes under their headings, both in the order in which they first come. */
-export function grouped(scenes: readonly Shipped[]): { heading: string; scenes: Shipped[] }[] {
-  const headings = new Map<string, Shipped[]>();
-  for (const scene of scenes) headings.set(scene.group, [...(headings.get(scene.group) ?? []), scene]);
-  return Array.from(headings, ([heading, members]) => ({ heading, scenes: members }));
-}
-
 /** The header in which `qhat play` names the file that /scene holds, percent-encoded. */
 export const FILE_NAME_HEADER = 'x-qhat-scene-name';
 
-/** The scene `qhat play SCENE` was given; null where the page is served by something else. */
+/** The scene that `qhat play SCENE` was given; null where another program serves the page. */
 export async function sceneFromCommand(): Promise<SceneSource | null> {
   // The command serves on the loopback address only; asking any other server would only put a 404 in its log.
   if (!['127.0.0.1', 'localhost', '[::1]'].includes(location.hostname)) return null;

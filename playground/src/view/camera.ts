@@ -1,4 +1,4 @@
-// Where a scene's metres land on the canvas. 2D is the orthographic 3D view from the front that cannot turn.
+// Projects points of the scene, m, to points of the canvas, px. A 2D view is a 3D view from the front that cannot turn.
 
 export type Vec3 = readonly [number, number, number];
 
@@ -9,7 +9,7 @@ export interface Box {
 
 const SMALLEST_SCALE = 1e-6;
 const LARGEST_SCALE = 1e9;
-/** The part of the free canvas that a fitted scene fills; a box in space is larger on the screen than what is in it. */
+/** The part of the free canvas that a fitted scene fills; in space a box is larger on the screen than its contents. */
 const FIT = { 2: 0.8, 3: 1 };
 
 export class Camera {
@@ -22,7 +22,7 @@ export class Camera {
   /** canvas size, px */
   width = 1;
   height = 1;
-  /** what panels cover on each side, px: the middle is the middle of the rest */
+  /** width that panels cover on each side, px: the middle of the view is the middle of the rest */
   inset = { left: 0, right: 0, top: 0, bottom: 0 };
 
   right: Vec3 = [1, 0, 0];
@@ -32,7 +32,7 @@ export class Camera {
 
   constructor(
     readonly dimension: 2 | 3,
-    /** which axis of a 3D scene points up: the one against gravity */
+    /** the axis of a 3D scene that points up, against gravity */
     private readonly upAxis: 1 | 2 = 1,
   ) {
     if (dimension === 3) this.setOrbit(-0.6, 0.35);
@@ -102,7 +102,7 @@ export class Camera {
     }
   }
 
-  /** Zooms about a screen point, which keeps what lies under it. */
+  /** Zooms about a screen point: the point of the scene under it stays there. */
   zoom(factor: number, sx: number, sy: number): void {
     const scale = Math.min(LARGEST_SCALE, Math.max(SMALLEST_SCALE, this.scale * factor));
     const [mx, my] = this.middle;

@@ -1,81 +1,82 @@
-// Colours of the canvas. Tension is blue, compression orange: a pair that every common kind of colour blindness keeps
-// apart, and that also differs from the grey of an unloaded rod in lightness.
+// The colours that canvas, plots and matrices draw with, read from the variables of style/colours.css once a theme.
 
-export interface Palette {
-  background: string;
-  grid: string;
-  ink: string;
-  muted: string;
-  /** wires and rails: nearer to the background than what moves */
-  guide: string;
-  accent: string;
-  particle: string;
-  particleRim: string;
-  ghost: string;
-  spring: string;
-  compression: Rgb;
-  slack: Rgb;
-  pull: Rgb;
-}
+/** Each colour of the palette and the variable that holds it. */
+const VARIABLES = {
+  background: '--canvas',
+  grid: '--grid',
+  ink: '--ink',
+  muted: '--outline',
+  guide: '--guide',
+  accent: '--accent',
+  particle: '--particle',
+  ghost: '--ghost',
+  spring: '--spring',
+  push: '--push',
+  slack: '--slack',
+  pull: '--pull',
+  plotInk: '--plot-ink',
+  plotLine: '--plot-line',
+  cell: '--cell',
+  cellInk: '--cell-ink',
+  onStrongCell: '--on-strong-cell',
+  onWeakCell: '--on-weak-cell',
+} as const;
+
+export type Palette = Record<keyof typeof VARIABLES, string> & {
+  /** from the largest push (first) over no load to the largest pull (last) */
+  tension: readonly string[];
+};
 
 type Rgb = readonly [number, number, number];
 
-export const LIGHT: Palette = {
-  background: '#f6f5f1',
-  grid: '#e7e5de',
-  ink: '#1c2126',
-  muted: '#6a7078',
-  guide: '#a9aca9',
-  accent: '#0b7a66',
-  particle: '#262c33',
-  particleRim: '#f6f5f1',
-  ghost: '#5f6670',
-  spring: '#767c85',
-  compression: [201, 88, 10],
-  slack: [168, 172, 178],
-  pull: [22, 92, 204],
-};
-
-export const DARK: Palette = {
-  background: '#12161b',
-  grid: '#1e242b',
-  ink: '#e8ebee',
-  muted: '#929ba6',
-  guide: '#6b7682',
-  accent: '#46d0ae',
-  particle: '#e8ebee',
-  particleRim: '#12161b',
-  ghost: '#9aa3ae',
-  spring: '#848d98',
-  compression: [255, 158, 66],
-  slack: [92, 100, 110],
-  pull: [96, 172, 255],
-};
-
-/** Odd, so that zero has a colour of its own. */
+/** Odd, so that zero has a colour of its own; 41 steps look continuous on a line. */
 export const TENSION_STEPS = 41;
 
-/** The colours from full compression (first) over slack to full tension (last). */
-export function tensionColours(palette: Palette): string[] {
-  return Array.from({ length: TENSION_STEPS }, (_, step) => {
-    const part = (2 * step) / (TENSION_STEPS - 1) - 1;
-    return css(mix(palette.slack, part < 0 ? palette.compression : palette.pull, Math.abs(part)));
-  });
+/** Builds the palette; `read` gives the colour of a variable as `rgb(red, green, blue)`. */
+export function paletteFrom(read: (variable: string) => string): Palette {
+  const names = Object.keys(VARIABLES) as (keyof typeof VARIABLES)[];
+  const colours = Object.fromEntries(names.map((name) => [name, read(VARIABLES[name])]));
+  const { push, slack, pull } = colours;
+  return {
+    ...(colours as Record<keyof typeof VARIABLES, string>),
+    tension: tensionColours(push, slack, pull),
+  };
 }
 
-/** Which of the tension colours a rod has; a scale of `limit` newtons each way. */
+/** The palette of the theme that the document shows now. */
+export function readPalette(): Palette {
+  // a variable that holds light-dark(…) is resolved only as the colour of an element
+  const probe = document.createElement('span');
+  document.body.append(probe);
+  const palette = paletteFrom((variable) => {
+    probe.style.color = `var(${variable})`;
+    return getComputedStyle(probe).color;
+  });
+  probe.remove();
+  return palette;
+}
+
+/** Which of the tension colours a link has on a scale of `limit` newtons each way. */
 export function tensionStep(tension: number, limit: number): number {
   const middle = (TENSION_STEPS - 1) / 2;
   if (!Number.isFinite(tension) || !(limit > 0)) return middle;
   return Math.round(middle + middle * Math.min(1, Math.max(-1, tension / limit)));
 }
 
-function mix(from: Rgb, to: Rgb, part: number): Rgb {
-  // a square root lifts weak colours off the grey; the sign and the order stay
-  const weight = Math.sqrt(part);
-  return [0, 1, 2].map((i) => Math.round(from[i] + (to[i] - from[i]) * weight)) as unknown as Rgb;
+function tensionColours(push: string, slack: string, pull: string): string[] {
+  return Array.from({ length: TENSION_STEPS }, (_, step) => {
+    const part = (2 * step) / (TENSION_STEPS - 1) - 1;
+    return mix(parse(slack), parse(part < 0 ? push : pull), Math.abs(part));
+  });
 }
 
-function css([red, green, blue]: Rgb): string {
+function mix(from: Rgb, to: Rgb, part: number): string {
+  // a square root lifts weak colours off the grey; the sign and the order stay
+  const weight = Math.sqrt(part);
+  const [red, green, blue] = from.map((value, i) => Math.round(value + (to[i] - value) * weight));
   return `rgb(${red} ${green} ${blue})`;
+}
+
+function parse(colour: string): Rgb {
+  return colour.match(/\d+/g)!.map(Number) as unknown as Rgb;
 }

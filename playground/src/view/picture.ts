@@ -1,6 +1,7 @@
-// What one drawn frame needs. Plain data: the drawing reads it and keeps nothing.
+// The data of one drawn frame. The layers read it and keep nothing.
 
-import type { Mark, Structure } from '../engine';
+import type { Shape, Structure } from '../engine';
+import type { Held } from '../session/hand';
 
 export type Selection = { kind: 'particle'; index: number } | { kind: 'link'; index: number } | null;
 
@@ -15,14 +16,12 @@ export interface Arrow {
 export interface Picture {
   structure: Structure;
   positions: Float64Array;
-  /** what holds the particles beside rods, nails and springs */
-  marks: Mark[];
-  /** the way things fall, a unit vector */
+  /** the engine's shapes without broken links */
+  shapes: Shape[];
+  /** the direction of gravity, a unit vector */
   down: number[];
   /** N, one per link */
   tension: Float64Array;
-  /** places of the links that are broken */
-  broken: Set<number>;
   /** N at the ends of the colour scale */
   tensionLimit: number;
   /** positions of the comparison run, or null */
@@ -31,6 +30,7 @@ export interface Picture {
   ghostStopped: boolean;
   selection: Selection;
   hover: Selection;
-  mouse: { particle: number; target: number[] } | null;
+  /** the particle that the hand pulls */
+  held: Held | null;
   arrows: Arrow[];
 }

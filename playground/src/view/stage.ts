@@ -1,19 +1,22 @@
-// The canvas, its camera and the drawing loop: asks the session for a frame, draws what it finds.
+// The canvas, its camera and the drawing loop: lets time go on, then draws the state.
 
-import type { Mark } from '../engine';
+import type { Simulation } from '../engine';
+import type { Page } from '../page';
 import { unbroken } from '../session/links';
 import { niceCeiling } from '../session/numbers';
-import { boxOfMotion } from '../session/scout';
-import type { Session } from '../session/session.svelte';
+import { boxOfMotion } from '../session/preview';
 import { type Box, Camera } from './camera';
 import { CanvasView } from './canvas';
 import type { Arrow, Picture, Selection } from './picture';
 
-/** Above this a step is shown as the jump it is; below, the drawing slides from one state to the next. */
+/** Steps longer than this are shown as jumps, s; between shorter steps the drawing slides from state to state. */
 const LONGEST_SMOOTHED_STEP = 1 / 30;
 
-/** A peak of tension is half forgotten after 140 frames, about two seconds. */
+/** Factor a frame of the largest tension: half of a peak is left after 140 frames, about two seconds. */
 const FADE = 0.995;
+
+/** The parts of the page that the stage reads. */
+type Parts = Pick<Page, 'session' | 'comparison' | 'hand' | 'playback' | 'readings' | 'theme'>;
 
 export class Stage {
   camera = new Camera(2);
@@ -22,30 +25,30 @@ export class Stage {
   /** ends of the colour scale, N */
   tensionLimit = 1;
   /** the largest tension of late, N */
-  private loudest = 0;
+  private largest = 0;
   onTensionLimit: (limit: number) => void = () => {};
   private box: Box | null = null;
-  private marks: Mark[] = [];
   private request = 0;
   /** true until a person moves the view: only then may it follow a changed window */
   private fitted = true;
 
   constructor(
     canvas: HTMLCanvasElement,
-    private readonly session: Session,
+    private readonly parts: Parts,
   ) {
-    this.view = new CanvasView(canvas);
-    session.onScene = () => this.openScene();
+    this.view = new CanvasView(canvas, parts.theme.palette);
+    parts.session.opened.listen(() => this.openScene());
   }
 
   start(): void {
     const loop = (timeMs: number) => {
       this.request = requestAnimationFrame(loop);
       try {
-        this.session.frame(timeMs);
+        this.parts.playback.frame(timeMs);
+        this.parts.readings.frame(timeMs);
         this.draw();
       } catch (error) {
-        this.session.crash(error);
+        this.parts.session.crash(error);
       }
     };
     this.request = requestAnimationFrame(loop);
@@ -56,16 +59,15 @@ export class Stage {
   }
 
   private openScene(): void {
-    const { run, structure } = this.session;
+    const { run, structure } = this.parts.session;
     if (!run || !structure) return;
     const gravity = run.simulation.controls().gravity;
     const { inset } = this.camera;
     this.camera = new Camera(structure.dimension, Math.abs(gravity[1]) > Math.abs(gravity[2]) ? 1 : 2);
     this.camera.inset = inset;
     this.box = boxOfMotion(run.simulation, structure);
-    this.marks = run.simulation.marks(run.simulation.time);
     this.hover = null;
-    this.loudest = 0;
+    this.largest = 0;
     this.view.resize(this.camera);
     this.fit();
   }
@@ -90,7 +92,7 @@ export class Stage {
     this.camera.orbit(dx, dy);
   }
 
-  /** What panels cover, px; a view nobody has moved stays fitted to the rest. */
+  /** Sets the width that panels cover, px; a view that no person has moved stays fitted to the rest. */
   setInset(inset: Camera['inset']): void {
     const old = this.camera.inset;
     if ((Object.keys(inset) as (keyof typeof inset)[]).every((side) => inset[side] === old[side])) return;
@@ -99,7 +101,7 @@ export class Stage {
   }
 
   pick(x: number, y: number, reach: number): Selection {
-    const { run, structure } = this.session;
+    const { run, structure } = this.parts.session;
     return run && structure
       ? this.view.pick(structure, run.simulation.positions(), this.camera, x, y, reach)
       : null;
@@ -107,32 +109,37 @@ export class Stage {
 
   positionOf(particle: number): number[] {
     const d = this.camera.dimension;
-    return Array.from(this.session.run!.simulation.positions().subarray(d * particle, d * particle + d));
+    return Array.from(
+      this.parts.session.run!.simulation.positions().subarray(d * particle, d * particle + d),
+    );
   }
 
   draw(): void {
     if (this.view.resize(this.camera) && this.fitted) this.fit();
-    const { run, ghost, structure } = this.session;
+    const { session, comparison, hand, readings, theme } = this.parts;
+    const { run, structure } = session;
+    this.view.palette = theme.palette;
     if (!run || !structure) {
       this.view.empty(this.camera);
       return;
     }
     const tension = this.readTension();
-    const broken = new Set(run.simulation.broken());
     this.followTension(tension);
     const picture: Picture = {
       structure,
       positions: this.smoothed(run.simulation),
-      marks: unbroken(this.marksNow(run.simulation), structure.links, broken),
-      down: this.session.down,
+      shapes: unbroken(
+        run.simulation.shapesAt(structure.shapes, run.simulation.time - this.behind()),
+        new Set(run.simulation.broken()),
+      ),
+      down: session.down,
       tension,
-      broken,
       tensionLimit: this.tensionLimit,
-      ghost: ghost ? this.smoothed(ghost.simulation) : null,
-      ghostStopped: this.session.ghostStopped !== null,
-      selection: this.session.selection,
+      ghost: comparison.ghost ? this.smoothed(comparison.ghost.simulation) : null,
+      ghostStopped: comparison.stopped !== null,
+      selection: readings.selection,
       hover: this.hover,
-      mouse: this.session.mouse,
+      held: hand.held,
       arrows: this.arrows(),
     };
     this.view.draw(picture, this.camera);
@@ -140,12 +147,13 @@ export class Stage {
 
   /** How far the drawing is behind the state, s. */
   private behind(): number {
-    const h = this.session.controls?.h ?? 0;
-    return h > LONGEST_SMOOTHED_STEP || !this.session.running ? 0 : (1 - this.session.fraction) * h;
+    const { session, playback } = this.parts;
+    const h = session.controls?.h ?? 0;
+    return h > LONGEST_SMOOTHED_STEP || !playback.running ? 0 : (1 - playback.fraction) * h;
   }
 
   /** Positions part of a step back along the velocity, so that steps and screen frames out of beat do not judder. */
-  private smoothed(simulation: NonNullable<Session['run']>['simulation']): Float64Array {
+  private smoothed(simulation: Simulation): Float64Array {
     const positions = simulation.positions();
     const back = this.behind();
     if (back <= 0) return positions;
@@ -154,36 +162,30 @@ export class Stage {
     return positions;
   }
 
-  /** Asked for again only where something is led. */
-  private marksNow(simulation: NonNullable<Session['run']>['simulation']): Mark[] {
-    if (this.marks.some(({ driven }) => driven))
-      this.marks = simulation.marks(simulation.time - this.behind());
-    return this.marks;
-  }
-
   private readTension(): Float64Array {
+    const { run, structure } = this.parts.session;
     try {
-      return this.session.run!.simulation.tension();
+      return run!.simulation.tension();
     } catch {
-      // a state at which λ does not exist has no tension to colour; the session says so in words
-      return new Float64Array(this.session.structure!.links.length).fill(Number.NaN);
+      // a state at which λ does not exist has no tension to colour; the readings say so in words
+      return new Float64Array(structure!.links.length).fill(Number.NaN);
     }
   }
 
-  /** The scale grows at once and shrinks slowly, in round numbers, so that colours keep their meaning while one looks. */
+  /** The scale grows at once and shrinks slowly, in round numbers, so that a colour keeps its meaning for a while. */
   private followTension(tension: Float64Array): void {
-    if (this.session.running) this.loudest *= FADE;
+    if (this.parts.playback.running) this.largest *= FADE;
     for (const value of tension) {
-      if (Number.isFinite(value)) this.loudest = Math.max(this.loudest, Math.abs(value));
+      if (Number.isFinite(value)) this.largest = Math.max(this.largest, Math.abs(value));
     }
-    const limit = niceCeiling(this.loudest);
+    const limit = niceCeiling(this.largest);
     if (limit === this.tensionLimit) return;
     this.tensionLimit = limit;
     this.onTensionLimit(limit);
   }
 
   private arrows(): Arrow[] {
-    const { selection, terms } = this.session;
+    const { selection, terms } = this.parts.readings;
     if (selection?.kind !== 'particle' || !terms) return [];
     const d = this.camera.dimension;
     const part = (flat: Float64Array) =>

@@ -33,7 +33,9 @@ it('shows a singular A calmly and lives on: scalar nail, ε = 0', async () => {
     const terms = window.qhat.terms()!;
     return { rank: terms.rank, rows: terms.residual.length };
   });
-  const nails = await page.evaluate(() => window.qhat.structure()!.nails.length);
+  const nails = await page.evaluate(
+    () => window.qhat.structure()!.shapes.filter(({ kind }) => kind === 'nail').length,
+  );
   expect(rank).toBe(rows - nails);
   // past that instant the source's method goes on, until it explodes, which is why it had the menu
   await step(page, 3);
@@ -79,7 +81,7 @@ it('shows J, A, λ and the four terms of b', async () => {
   const text = await page.getByTestId('terms').innerText();
   for (const symbol of ['λ', '−γ', '−JWQ', '−ks C', '−kd Ċ', 'J = ∂C/∂q', 'A = J W Jᵀ'])
     expect(text).toContain(symbol);
-  const rod = await page.evaluate(() => window.qhat.structure()!.links[0].rows[0]);
+  const rod = await page.evaluate(() => window.qhat.structure()!.links[0].link.rows[0]);
   const lambda = await page.evaluate((row) => window.qhat.terms()!.multipliers[row], rod);
   const shown = Number((await page.getByTestId(`lambda-${rod}`).innerText()).replace('−', '-'));
   // shown to three digits

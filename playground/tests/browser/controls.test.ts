@@ -133,7 +133,9 @@ it('classic and modern forms have their own rows', async () => {
   const classic = await rows();
   await page.getByTestId('formulation-modern').check();
   // each scalar nail becomes a vector nail of two rows
-  const nails = await page.evaluate(() => window.qhat.structure()!.nails.length);
+  const nails = await page.evaluate(
+    () => window.qhat.structure()!.shapes.filter(({ kind }) => kind === 'nail').length,
+  );
   expect(nails).toBeGreaterThan(0);
   expect(await rows()).toBe(classic + nails);
 });

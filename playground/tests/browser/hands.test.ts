@@ -116,24 +116,24 @@ it('colours ropes that pull, lets slack ones hang, and shows their numbers', asy
   expect(tension.length).toBe(links.length);
   const ropes = links
     .map((link, i) => ({ ...link, tension: tension[i] }))
-    .filter(({ shortest }) => !shortest);
+    .filter(({ kind }) => kind === 'rope');
   const taut = ropes.reduce((best, rope) => (rope.tension > best.tension ? rope : best));
   const slack = ropes.filter((rope) => rope.tension === 0);
   expect(taut.tension).toBeGreaterThan(1);
   expect(slack.length).toBeGreaterThan(0);
   // pull is blue, the straight line of a slack rope is empty canvas
-  const [red, , blue] = await colourBetween(page, taut.a, taut.b);
+  const [red, , blue] = await colourBetween(page, taut.particles[0], taut.particles[1]);
   expect(blue - red).toBeGreaterThan(80);
-  const [r, g, b] = await colourBetween(page, slack[0].a, slack[0].b);
+  const [r, g, b] = await colourBetween(page, slack[0].particles[0], slack[0].particles[1]);
   expect(Math.max(r, g, b) - Math.min(r, g, b)).toBeLessThan(20);
 
   const ends = await page.evaluate(
     ([i, k]) => [window.qhat.screen(i), window.qhat.screen(k)],
-    [taut.a, taut.b],
+    taut.particles,
   );
   await page.mouse.click((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
   const inspector = await page.getByTestId('inspector').innerText();
-  expect(inspector).toContain(`rope, at most ${Number(taut.longest!.toPrecision(3))} m`);
+  expect(inspector).toContain(`rope, at most ${Number(taut.size.toPrecision(3))} m`);
   expect(inspector).toContain('pull');
   const shown = (await page.getByTestId('tension').innerText()).replace('−', '-');
   expect(Math.abs(Number.parseFloat(shown) - taut.tension)).toBeLessThan(6e-4);

@@ -1,4 +1,4 @@
-// One Chromium for a test file, and pages in it that remember what they complained about and whom they asked.
+// One Chromium for a test file, and pages in it that record their errors and their requests.
 
 import {
   type Browser,
@@ -68,7 +68,7 @@ export function laboratory(): Lab {
   return lab;
 }
 
-/** Stopped at t = 0, so that what follows does not depend on how fast the machine is. */
+/** Stops at t = 0, so that a test does not depend on the speed of the machine. */
 export async function atStart(page: Page): Promise<void> {
   await page.evaluate(() => {
     window.qhat.pause();
@@ -113,10 +113,10 @@ export const lengthError = (page: Page) =>
     const d = structure.dimension;
     const point = (i: number) => positions.slice(d * i, d * i + d);
     return Math.max(
-      ...structure.links.map(({ a, b, shortest, longest }) => {
-        if (shortest !== longest) return 0;
+      ...structure.links.map(({ kind, size, particles: [a, b] }) => {
+        if (kind !== 'rod') return 0;
         const other = point(b);
-        return Math.abs(Math.hypot(...point(a).map((x, k) => x - other[k])) - longest!);
+        return Math.abs(Math.hypot(...point(a).map((x, k) => x - other[k])) - size);
       }),
     );
   });

@@ -1,4 +1,4 @@
-// Every scene that ships: opens, plays and is drawn without a complaint, with what it is made of in view.
+// Every shipped scene opens, plays and is drawn without an error, with all of its particles in view.
 
 import { expect, it } from 'vitest';
 import { laboratory, state, step } from './page';

@@ -1,32 +1,38 @@
 import { expect, it } from 'vitest';
-import { isRod, lengthsOf, nameOf, unbroken } from '../../src/session/links';
+import type { LinkShape, Shape } from '../../src/engine';
+import { isRod, lengthsOf, unbroken } from '../../src/session/links';
 
-const link = (shortest: number | null, longest: number | null) => ({
+const shape = (kind: Shape['kind'], link: Shape['link']): Shape => ({
+  kind,
+  of: { list: 'constraint', index: 0 },
   name: 'l',
-  a: 0,
-  b: 1,
-  shortest,
-  longest,
-  rows: [0],
+  particles: [0, 1],
+  points: new Float64Array(),
+  size: 1,
+  driven: false,
+  link,
 });
+const link = (kind: 'rod' | 'rope' | 'strut', shortest: number | null, longest: number | null, place = 0) =>
+  shape(kind, { place, shortest, longest, rows: [place] }) as LinkShape;
 
-it('calls each link what it is, and says how long it may be', () => {
-  const cases = [link(2, 2), link(null, 2), link(2, null), link(1, 2)];
+it('says how long each link may be', () => {
+  const cases = [link('rod', 2, 2), link('rope', null, 2), link('strut', 2, null), link('strut', 1, 2)];
   expect(cases.map(isRod)).toEqual([true, false, false, false]);
-  expect(cases.map(nameOf)).toEqual(['rod', 'rope', 'strut', 'strut']);
-  expect(cases.map(lengthsOf)).toEqual(['2 m', 'at most 2 m', 'at least 2 m', '1 m to 2 m']);
+  expect(cases.map((each) => lengthsOf(each.link))).toEqual([
+    '2 m',
+    'at most 2 m',
+    'at least 2 m',
+    '1 m to 2 m',
+  ]);
 });
 
-it('draws nothing of a broken rope', () => {
-  const mark = (kind: 'rope' | 'wheel', particles: number[]) => ({
-    kind,
-    particles,
-    points: new Float64Array(),
-    size: 1,
-    driven: false,
-  });
-  const marks = [mark('rope', [0, 1]), mark('wheel', [0, 1]), mark('rope', [1, 2])];
-  const links = [link(null, 2), { ...link(null, 2), a: 1, b: 2 }];
-  expect(unbroken(marks, links, new Set())).toBe(marks);
-  expect(unbroken(marks, links, new Set([0]))).toEqual([marks[1], marks[2]]);
+it('draws nothing of a broken link, and all else between the same particles', () => {
+  const shapes = [
+    link('rope', null, 2, 0),
+    shape('wheel', null),
+    link('rod', 2, 2, 1),
+    link('rope', null, 2, 2),
+  ];
+  expect(unbroken(shapes, new Set())).toBe(shapes);
+  expect(unbroken(shapes, new Set([0, 1]))).toEqual([shapes[1], shapes[3]]);
 });

@@ -1,5 +1,7 @@
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
-import { DARK, LIGHT, TENSION_STEPS, tensionColours, tensionStep } from '../../src/view/palette';
+import { TENSION_STEPS, tensionStep } from '../../src/view/palette';
+import { colours } from './colours';
 
 type Rgb = [number, number, number];
 const parse = (css: string) => css.match(/\d+/g)!.map(Number) as Rgb;
@@ -32,17 +34,25 @@ describe('the tension colours', () => {
   });
 
   it.each(Object.entries(BLINDNESS))('differ under %s', (_, matrix) => {
-    for (const palette of [LIGHT, DARK]) {
-      const colours = tensionColours(palette).map(parse);
-      const [push, slack, pull] = [
-        colours[0],
-        colours[(TENSION_STEPS - 1) / 2],
-        colours[TENSION_STEPS - 1],
-      ].map((colour) => seen(colour, matrix));
-      // 60 of 441 is several times what is just told apart on a 3 px line
+    for (const theme of ['light', 'dark'] as const) {
+      const { tension } = colours(theme);
+      const [push, slack, pull] = [0, (TENSION_STEPS - 1) / 2, TENSION_STEPS - 1].map((step) =>
+        seen(parse(tension[step]), matrix),
+      );
+      // 60 of 441 is several times the smallest difference that an eye sees on a 3 px line
       expect(distance(push, pull)).toBeGreaterThan(60);
       expect(distance(push, slack)).toBeGreaterThan(60);
       expect(distance(pull, slack)).toBeGreaterThan(60);
     }
   });
+});
+
+it('colours stand in colours.css and nowhere else', () => {
+  const source = new URL('../../src/', import.meta.url);
+  const files = readdirSync(source, { recursive: true, encoding: 'utf8' }).filter(
+    (file) => /\.(ts|svelte|css)$/.test(file) && !file.startsWith('wasm') && !file.endsWith('colours.css'),
+  );
+  expect(files.length).toBeGreaterThan(40);
+  const literal = /#[0-9a-f]{6}\b|#[0-9a-f]{3}\b|\b(rgb|hsl)a?\(\s*\d/i;
+  expect(files.filter((file) => literal.test(readFileSync(new URL(file, source), 'utf8')))).toEqual([]);
 });

@@ -26,8 +26,8 @@ impl World {
                 let at = vector(&workload.positions[D * i..][..D]);
                 let body = if workload.fixed[i] == 1 { RigidBodyBuilder::fixed() } else { RigidBodyBuilder::dynamic() };
                 let body = body.translation(at).can_sleep(false);
-                // A link on hinges turns with its rod, and Rapier wants some moment of inertia for that: a ten-thousandth
-                // of m r² changes the motion less than the steps do. Elsewhere nothing turns.
+                // A link on hinges turns with its rod, and Rapier needs a moment of inertia for the turning. A
+                // ten-thousandth of m r² changes the motion less than the steps do. Without hinges no body turns.
                 let body = if turns {
                     body.additional_mass_properties(point_mass(workload, i))
                 } else {

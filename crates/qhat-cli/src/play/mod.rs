@@ -1,4 +1,4 @@
-//! `qhat play`: the page, served from inside the command to this machine only.
+//! `qhat play`: serves the page, which is embedded in the command, to this machine only.
 
 #[cfg(feature = "page")]
 mod answer;
@@ -11,14 +11,14 @@ use crate::arguments;
 use crate::failure::Failure;
 use std::process::ExitCode;
 
-/// Serves the page until someone presses Ctrl-C.
+/// Serves the page until Ctrl-C.
 #[cfg(feature = "page")]
 pub(crate) fn play(arguments: &arguments::Play) -> Result<ExitCode, Failure> {
     use crate::{print, source::Source};
 
     let scene = arguments.scene.as_deref().map(Source::read).transpose()?;
     if let Some(scene) = &scene {
-        // The page shows what is wrong as well, but whoever typed the command looks here.
+        // The page shows the errors, too, but the user who typed the command looks at the terminal.
         scene.load().map_err(Failure::formatted)?;
     }
     let listener = server::listen(arguments.port)?;
@@ -32,7 +32,7 @@ pub(crate) fn play(arguments: &arguments::Play) -> Result<ExitCode, Failure> {
     server::serve(&listener, scene)
 }
 
-/// Says how to get a command that has the page.
+/// Refuses, and says how to build a command with the page.
 #[cfg(not(feature = "page"))]
 pub(crate) fn play(_: &arguments::Play) -> Result<ExitCode, Failure> {
     Err(Failure::input(

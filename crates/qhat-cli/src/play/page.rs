@@ -1,4 +1,4 @@
-//! The built page, as it was when the command was compiled.
+//! The files of the page, embedded when the command was compiled.
 
 use rust_embed::RustEmbed;
 use std::borrow::Cow;
@@ -13,7 +13,7 @@ pub(crate) fn file(path: &str) -> Option<(Cow<'static, [u8]>, &'static str)> {
     Page::get(path).map(|file| (file.data, mime_type(path)))
 }
 
-/// Of every kind of file that a page is made of. Browsers refuse to compile WebAssembly of another type.
+/// The MIME type of a file by its ending. Browsers compile WebAssembly only with its own type.
 fn mime_type(path: &str) -> &'static str {
     match path.rsplit_once('.').map(|(_, ending)| ending) {
         Some("html") => "text/html; charset=utf-8",

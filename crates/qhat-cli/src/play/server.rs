@@ -11,20 +11,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// q-h-a-t has four letters, and nobody else has this port.
+/// The first port that is tried; it is registered for no other service.
 const FIRST_PORT: u16 = 7407;
-/// A person plays with a few scenes at once, not with more.
+/// The number of ports that are tried, enough for several scenes at once.
 const PORTS_TRIED: u16 = 20;
-/// Browsers send about a kilobyte [bytes].
+/// The most bytes of a request; browsers send about a thousand.
 const LONGEST_REQUEST: usize = 16 << 10;
-/// Browsers send about twenty.
+/// The most headers of a request; browsers send about twenty.
 const MOST_HEADERS: usize = 64;
-/// A browser opens six connections a page.
+/// The most connections at once; a browser opens six for a page.
 const MOST_CONNECTIONS: usize = 64;
-/// On one machine anything longer is a hang.
+/// The longest wait for a request or an answer. On one machine a longer one is a hang.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Listens on a port of 127.0.0.1; without one (or with 0) on the first that is free.
+/// Listens on a port of 127.0.0.1; without a port, or with 0, on the first that is free.
 pub(crate) fn listen(port: Option<u16>) -> Result<TcpListener, Failure> {
     let bind = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
     match port {
@@ -39,10 +39,10 @@ pub(crate) fn listen(port: Option<u16>) -> Result<TcpListener, Failure> {
     }
 }
 
-/// Opens the address in a browser, and says so if there is none.
+/// Opens the address in a browser. Prints a message where no browser can be opened.
 pub(crate) fn open(address: &str) {
     let address = address.to_owned();
-    // Some openers return only when their browser is closed.
+    // Some openers return when their browser is closed, so that a thread of its own waits.
     thread::spawn(move || {
         if !has_display() || opener::open_browser(&address).is_err() {
             warn("no browser could be opened; open the address in one yourself");
@@ -50,7 +50,7 @@ pub(crate) fn open(address: &str) {
     });
 }
 
-/// On a machine without a display an opener may start a browser of letters in the very terminal qhat is in.
+/// Whether there is a display. Without one an opener may start a text browser in the terminal of the command.
 fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(all(unix, not(target_os = "macos"))) || ["DISPLAY", "WAYLAND_DISPLAY", "BROWSER"].into_iter().any(set)
@@ -62,35 +62,35 @@ pub(crate) fn serve(listener: &TcpListener, scene: Option<Source>) -> Result<Exi
     let scene = Arc::new(scene);
     let open = Arc::new(AtomicUsize::new(0));
     for stream in listener.incoming() {
-        // A connection that broke before it was taken, or too many open files: the next may do.
+        // Errors of one connection (broken early, too many open files) do not concern the next.
         let Ok(stream) = stream else { continue };
-        let place = Place::take(&open);
-        if place.is_none() {
+        let slot = Slot::take(&open);
+        if slot.is_none() {
             continue;
         }
         let scene = Arc::clone(&scene);
         let worker = move || {
-            let _place = place;
-            // Whoever hung up in the middle is not there to be told.
+            let _slot = slot;
+            // An error means that the other side has closed the connection.
             let _ = converse(stream, port, scene.as_ref().as_ref());
         };
-        // Where there is no thread to be had, the connection is dropped.
+        // Where no thread can be started, the connection is dropped.
         let _ = thread::Builder::new().spawn(worker);
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// One of the places for connections, free again when dropped.
-struct Place(Arc<AtomicUsize>);
+/// A slot for a connection, freed when dropped.
+struct Slot(Arc<AtomicUsize>);
 
-impl Place {
-    fn take(open: &Arc<AtomicUsize>) -> Option<Place> {
-        let place = Place(Arc::clone(open));
-        (open.fetch_add(1, Ordering::Relaxed) < MOST_CONNECTIONS).then_some(place)
+impl Slot {
+    fn take(open: &Arc<AtomicUsize>) -> Option<Slot> {
+        let slot = Slot(Arc::clone(open));
+        (open.fetch_add(1, Ordering::Relaxed) < MOST_CONNECTIONS).then_some(slot)
     }
 }
 
-impl Drop for Place {
+impl Drop for Slot {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
@@ -116,7 +116,7 @@ fn converse(mut stream: TcpStream, port: u16, scene: Option<&Source>) -> io::Res
     stream.shutdown(Shutdown::Write)
 }
 
-/// The answer to a request, as soon as all of its head is there.
+/// The answer to a request; none before its head is complete.
 fn answer_to(request: &[u8], port: u16, scene: Option<&Source>) -> Option<Vec<u8>> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut parsed = httparse::Request::new(&mut headers);
@@ -133,7 +133,7 @@ fn answer_to(request: &[u8], port: u16, scene: Option<&Source>) -> Option<Vec<u8
     let (method, target) = (parsed.method.unwrap_or_default(), parsed.path.unwrap_or_default());
     let mut hosts = parsed.headers.iter().filter(|header| header.name.eq_ignore_ascii_case("host"));
     let host = hosts.next().and_then(|header| std::str::from_utf8(header.value).ok());
-    // Two hosts are one too many to trust either.
+    // With two Host headers neither can be trusted.
     let host = if hosts.next().is_some() { None } else { host };
     let path = target.split(['?', '#']).next().unwrap_or_default();
     Some(answer(method, path, host, port, scene).bytes(method == "HEAD"))

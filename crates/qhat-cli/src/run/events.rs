@@ -1,10 +1,10 @@
-//! What happened to contacts and to what breaks, counted.
+//! The events of a run: counts of contact events, and the constraints that broke.
 
 use crate::print::count;
 use qhat::{Event, EventKind};
 use serde::Serialize;
 
-/// How many events of each kind a run had, and what broke.
+/// The number of contact events of each kind, and the constraints that broke.
 #[derive(Debug, Default, PartialEq, Serialize)]
 pub(super) struct Events {
     impacts: usize,
@@ -15,7 +15,7 @@ pub(super) struct Events {
     broke: Vec<Break>,
 }
 
-/// What broke, and when \[s\].
+/// A constraint that broke, and the time \[s\].
 #[derive(Debug, PartialEq, Serialize)]
 struct Break {
     constraint: String,
@@ -36,7 +36,7 @@ impl Events {
         }
     }
 
-    /// For a person: the counts in one line, what broke in one each; nothing where nothing happened.
+    /// The lines of the summary: the counts in one, each constraint that broke in one; none without events.
     pub(super) fn lines(&self) -> Vec<String> {
         let mut counts = Vec::new();
         if self.impacts > 0 {

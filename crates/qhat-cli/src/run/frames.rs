@@ -1,22 +1,25 @@
-//! The times at which a trajectory is written: t_i = i · duration / N, i = 0 … N.
+//! The times of the frames of a trajectory: t_i = i · duration / N, i = 0 … N.
 
 use crate::failure::Failure;
 use qhat::{Settings, SettingsError};
 
-/// More frames than this are a slip of the keyboard: a file of them has at least a gigabyte even for one particle.
+/// The most frames of a run. A file with more would have at least a gigabyte even for one particle.
 const MOST: f64 = 1e8;
 
 /// Equal frames over a duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frames {
-    /// \[s\].
+    /// The duration \[s\].
     pub(crate) duration: f64,
-    /// N; one more is written, the start.
+    /// N, the number of frames after the start; a trajectory has N + 1 rows.
     pub(crate) count: usize,
 }
 
 impl Frames {
-    /// As many as asked for, else as many as h fits into the duration.
+    /// Frames of a duration \[s\]: `count` of them, or else as many as h fits into the duration.
+    ///
+    /// # Errors
+    /// A duration that is not positive and finite, and too many frames.
     pub(crate) fn new(duration: f64, count: Option<usize>, settings: &Settings) -> Result<Self, Failure> {
         if !(duration.is_finite() && duration > 0.0) {
             return Err(Failure::input(format!("the duration must be positive and finite, but is {duration} s")));
@@ -43,7 +46,7 @@ impl Frames {
         self.duration / self.count as f64
     }
 
-    /// What to say when a fixed-step integrator cannot end a step at a frame.
+    /// The failure where a fixed-step integrator cannot end a step at a frame.
     pub(crate) fn refused(&self, error: &SettingsError, settings: &Settings) -> Failure {
         Failure::input(format!(
             "{error}\n`{}` takes steps of exactly h, and {} s in {} frames would end between two of them; \

@@ -1,14 +1,15 @@
-//! Ctrl-C ends a run after the frame it is in, so that hours of work are kept; a second one ends it at once.
+//! Ctrl-C: the first ends a run after the current frame, so that the frames reached are kept; the second ends the
+//! process at once.
 
 use crate::failure::{Failure, INTERRUPTED};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether someone wants the run to end.
+/// A flag that Ctrl-C raises.
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Listens from now on.
+    /// Handles Ctrl-C from now on.
     pub(crate) fn watch() -> Result<Self, Failure> {
         let flag = Arc::new(AtomicBool::new(false));
         let raised = Arc::clone(&flag);
@@ -21,6 +22,7 @@ impl Interrupt {
         Ok(Interrupt(flag))
     }
 
+    /// Whether Ctrl-C was pressed.
     pub(crate) fn came(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

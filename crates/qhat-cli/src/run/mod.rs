@@ -1,23 +1,24 @@
 //! `qhat run`: from a scene to a trajectory and a summary.
 
 mod events;
-mod frames;
-mod interrupt;
+pub(crate) mod frames;
+pub(crate) mod interrupt;
 mod origin;
-mod progress;
+pub(crate) mod progress;
 mod summary;
 
 use crate::arguments;
-use crate::failure::{Failure, INTERRUPTED, NOT_REACHED, warn};
+use crate::failure::{Failure, warn};
 use crate::print;
 use crate::source::Source;
 use crate::trajectory::{Recorder, Target};
 use cpu_time::ProcessTime;
 use frames::Frames;
 use interrupt::Interrupt;
-use origin::{Origin, Status};
+use origin::Origin;
 use progress::Progress;
 use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
+use qhat_scene::integrator_names;
 use std::process::ExitCode;
 use std::time::Instant;
 use summary::{Summary, Tally};
@@ -28,12 +29,12 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let source = Source::read(&arguments.scene)?;
     let scene = source.load().map_err(Failure::formatted)?;
     let settings = settings(arguments, scene.settings)?;
-    // An integrator that the scene did not choose may find no events.
+    // An integrator from the command line may find no events, which the reader of the scene could not know.
     qhat::check_start(&scene.system, &scene.state, &settings).map_err(Failure::input)?;
     let frames = Frames::new(arguments.duration.unwrap_or(scene.duration), arguments.frames, &settings)?;
     let target = arguments.output.as_deref().map(|path| Target::new(path, arguments.force)).transpose()?;
     let output = target.as_ref().map(|target| target.path().display().to_string());
-    // Before there are files to leave behind.
+    // Ctrl-C is handled before the first file exists, so that no temporary file is left behind.
     let interrupt = Interrupt::watch()?;
     let recorder = target.map(|target| Recorder::new(target, &scene.system)).transpose()?;
     let mut origin = Origin::new(&source, &scene, &settings, frames);
@@ -43,7 +44,7 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let (system, state) = (scene.system, scene.state);
     let stopped = match Simulation::new(system.clone(), state.clone(), settings) {
         Ok(simulation) => job.simulate(simulation)?,
-        // A start that cannot be made to hold is all that was reached.
+        // Where no positions satisfy the constraints, the start is the only frame.
         Err(error) => {
             job.start(&system, &evaluate(&system, &state))?;
             Some(Stop::Error(error))
@@ -64,33 +65,34 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     if let Some(message) = &origin.error {
         warn(format!("{}: {message}", origin.status));
     }
-    Ok(match origin.status {
-        Status::Done => ExitCode::SUCCESS,
-        Status::Diverged | Status::Infeasible => ExitCode::from(NOT_REACHED),
-        Status::Interrupted => ExitCode::from(INTERRUPTED),
-    })
+    Ok(origin.status.exit_code())
 }
 
-/// The scene's settings with what the command line says instead.
+/// The scene's settings, changed by the options of the command line.
 fn settings(arguments: &arguments::Run, scene: Settings) -> Result<Settings, Failure> {
     let mut settings = scene;
     if let Some(h) = arguments.h {
         settings.h = h;
     }
-    if let Some(name) = &arguments.integrator {
-        settings.integrator = name.parse().map_err(Failure::input)?;
+    if let Some(given) = &arguments.integrator {
+        // The parser of the arguments lets no other name through.
+        let chosen = integrator_names().find(|(name, _)| name == given);
+        settings.integrator = chosen.map_or(settings.integrator, |(_, integrator)| integrator);
+    }
+    if let Some(tolerance) = arguments.tolerance {
+        settings.tolerance = tolerance;
     }
     settings.check().map_err(Failure::input)?;
     Ok(settings)
 }
 
-/// Why a run ended before its time.
+/// The reason why a run ended early.
 enum Stop {
     Error(StepError),
     Interrupt,
 }
 
-/// A run at work.
+/// A run in progress.
 struct Job {
     frames: Frames,
     recorder: Option<Recorder>,
@@ -100,7 +102,7 @@ struct Job {
 }
 
 impl Job {
-    /// Steps from frame to frame; tells why it ended early, if it did.
+    /// Steps from frame to frame. Returns the reason where the run ends early.
     fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
         self.tally.moved = simulation.projection().moved;
         let terms = simulation.terms();
@@ -115,7 +117,7 @@ impl Job {
             self.tally.reached(&simulation);
             match outcome {
                 Ok(report) => self.tally.step(&report),
-                // The frame does not fit h: the options are at fault, and nothing has moved.
+                // The frame is no multiple of h, so the options are at fault. The state is unchanged.
                 Err(StepError::Settings(error)) => return Err(self.frames.refused(&error, simulation.settings())),
                 Err(error) => return Ok(Some(Stop::Error(error))),
             }

@@ -1,41 +1,16 @@
-//! Where numbers come from: enough to make them again, and to know how the run ended.
+//! The origin of a trajectory: the scene and settings from which it can be computed again, and the end of the run.
 
 use super::Stop;
 use super::frames::Frames;
 use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
+use crate::status::Status;
 use qhat::{Feedback, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
-use std::fmt;
 
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Status {
-    /// It reached its end.
-    Done,
-    /// The motion became infinite, left its constraints, or needed ever smaller steps.
-    Diverged,
-    /// No positions near by satisfy the constraints.
-    Infeasible,
-    /// Someone pressed Ctrl-C.
-    Interrupted,
-}
-
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Status::Done => "done",
-            Status::Diverged => "diverged",
-            Status::Infeasible => "infeasible",
-            Status::Interrupted => "interrupted",
-        })
-    }
-}
-
-/// Written with every trajectory.
+/// The origin, written with every trajectory.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Origin {
     qhat: &'static str,
@@ -46,21 +21,21 @@ pub(crate) struct Origin {
     scene_hash: String,
     dimension: usize,
     pub(crate) integrator: &'static str,
-    /// \[s\].
+    /// The step or frame \[s\].
     pub(crate) h: f64,
     tolerance: f64,
     constraint_tolerance: f64,
     feedback: FeedbackInUse,
-    /// As asked for \[s\].
+    /// The duration asked for \[s\].
     pub(crate) duration: f64,
-    /// As asked for, the start not counted.
+    /// The number of frames asked for, without the start.
     frames_asked: usize,
     /// t of the last good state \[s\].
     pub(crate) time_reached: f64,
     warnings: Vec<String>,
 }
 
-/// ks, kd, diagonal drag and elasticity, where the integrator uses them.
+/// The feedback that the integrator uses; zeros under an integrator that projects.
 #[derive(Clone, Debug, Serialize)]
 struct FeedbackInUse {
     ks: f64,
@@ -94,7 +69,10 @@ impl Origin {
         }
     }
 
-    /// Notes how it ended.
+    /// Notes the end of the run.
+    ///
+    /// # Errors
+    /// Settings that the engine refused in the middle of the run.
     pub(super) fn close(&mut self, tally: &Tally, stopped: Option<&Stop>) -> Result<(), Failure> {
         self.time_reached = tally.time_reached;
         self.warnings.clone_from(&tally.warnings);
@@ -104,10 +82,7 @@ impl Origin {
                 (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
-            Some(Stop::Error(error @ (StepError::NotSatisfied { .. } | StepError::Penetrates { .. }))) => {
-                (Status::Infeasible, Some(error.to_string()))
-            }
-            Some(Stop::Error(error)) => (Status::Diverged, Some(error.to_string())),
+            Some(Stop::Error(error)) => (Status::of(error), Some(error.to_string())),
         };
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! A bar on stderr, for a person at a terminal only. It has no colours, so `NO_COLOR` has nothing to switch off.
+//! The progress bar on stderr, shown at a terminal only. It has no colours, so that `NO_COLOR` needs no handling.
 
 use super::frames::Frames;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -6,11 +6,11 @@ use std::io::{self, IsTerminal};
 
 const TEMPLATE: &str = "{wide_bar} {percent:>3} %  {msg}  {eta} to go";
 
-/// How far a run is.
+/// The progress of a run.
 pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
-    /// A bar over the frames; none where nobody looks, or nobody wants it.
+    /// A bar over the frames; hidden with `quiet`, and where stderr is no terminal.
     pub(crate) fn new(frames: Frames, quiet: bool) -> Self {
         if quiet || !io::stderr().is_terminal() {
             return Progress(ProgressBar::hidden());
@@ -19,7 +19,7 @@ impl Progress {
         Progress(ProgressBar::new(frames.count as u64).with_style(style))
     }
 
-    /// A frame is done.
+    /// Shows that the frame `index` at a time \[s\] is done.
     pub(crate) fn at(&self, index: usize, time: f64) {
         if self.0.is_hidden() {
             return;
@@ -28,7 +28,7 @@ impl Progress {
         self.0.set_position(index as u64);
     }
 
-    /// Clears the line for what is printed next.
+    /// Clears the line of the bar.
     pub(crate) fn finish(&self) {
         self.0.finish_and_clear();
     }

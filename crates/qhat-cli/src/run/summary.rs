@@ -1,9 +1,10 @@
-//! What a run tells at its end.
+//! The summary at the end of a run.
 
 use super::events::Events;
-use super::origin::{Origin, Status};
+use super::origin::Origin;
 use crate::failure::Failure;
 use crate::print::{self, count, small};
+use crate::status::Status;
 use qhat::{Integrator, Simulation, Solver, StepReport, System, Terms, Warning};
 use serde::Serialize;
 use std::time::Duration;
@@ -19,20 +20,21 @@ pub(crate) struct Tally {
     max_relative_length_error: f64,
     energy_error: f64,
     energy_error_max: f64,
-    /// How far the start had to be moved to be consistent \[m\].
+    /// The largest move of a particle to the consistent start \[m\].
     pub(super) moved: f64,
     /// t of the last good state \[s\].
     pub(super) time_reached: f64,
     pub(super) cpu: Duration,
     pub(super) warnings: Vec<String>,
-    /// Of the frames whose budget ran out, the one that ended farthest off: its place among the warnings, and how far.
+    /// The warning of the frame that spent its budget and ended farthest off: its place in `warnings`, and its relative
+    /// error.
     worst_budget: Option<(usize, f64)>,
-    /// Who carried how many frames by which path, the first who did first.
+    /// The number of frames of each integrator and solver, in the order of their first frames.
     carried: Vec<Carried>,
     events: Events,
 }
 
-/// Frames that one integrator carried by one path to the multipliers.
+/// The number of frames that one integrator advanced with one solver of the multipliers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Carried {
     integrator: &'static str,
@@ -42,7 +44,7 @@ struct Carried {
 }
 
 impl Tally {
-    /// Notes the start: what is violated there counts as well.
+    /// Notes the length errors at the start.
     pub(super) fn start(&mut self, system: &System, terms: &Terms) {
         let rods = system.links().filter(|link| link.is_rod()).map(|rod| rod.rows.start);
         for row in rods.filter(|&row| system.is_rigid(row)) {
@@ -51,7 +53,7 @@ impl Tally {
         }
     }
 
-    /// Notes a frame that is evaluated.
+    /// Notes the terms of a frame.
     pub(super) fn frame(&mut self, system: &System, terms: &Terms) {
         self.frames += 1;
         let rigid = (0..system.row_count()).filter(|&row| system.is_rigid(row));
@@ -59,7 +61,7 @@ impl Tally {
         terms.warnings.iter().for_each(|warning| self.warn(warning));
     }
 
-    /// Notes what it took to get to the next frame.
+    /// Notes the report of a step to the next frame.
     pub(super) fn step(&mut self, report: &StepReport) {
         self.substeps += report.substeps;
         self.rejected += report.rejected;
@@ -79,7 +81,7 @@ impl Tally {
         }
     }
 
-    /// Notes where the simulation stands, be it at a frame or where a step failed.
+    /// Notes the time and the energy error of the current state, at a frame or where a step failed.
     pub(super) fn reached(&mut self, simulation: &Simulation) {
         self.time_reached = simulation.state().time();
         self.energy_error = simulation.energy_error();
@@ -162,7 +164,7 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// Who carried the frames and by which path; none where no frame was reached.
+    /// The integrators and solvers with their numbers of frames; none before the first frame.
     fn carriers(&self) -> Option<String> {
         let each = |carried: &Carried| {
             let frames = count(carried.frames, "frame");
@@ -172,7 +174,7 @@ impl<'a> Summary<'a> {
         (!list.is_empty()).then(|| list.join("; "))
     }
 
-    /// Prints it for a person.
+    /// Prints the summary as text.
     pub(super) fn print(&self) -> Result<(), Failure> {
         let mut lines = vec![
             ("simulated", format!("{}, {}", self.simulated(), count(self.frames, "frame"))),

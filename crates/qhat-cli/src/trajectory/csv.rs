@@ -1,4 +1,4 @@
-//! CSV: a header, then one line a frame. A CSV has no place for its origin, so that goes into FILE.csv.json beside it.
+//! CSV: a header, then one line a frame. The format has no place for the origin, which goes into FILE.csv.json.
 
 use super::target::Target;
 use crate::failure::Failure;
@@ -38,7 +38,7 @@ impl Recorder {
 
     pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
         let file = self.csv.into_inner().map_err(|failed| self.target.cannot_write(failed.error()))?;
-        // The origin first: a CSV that is there always says where it comes from.
+        // The origin comes first, so that no CSV is ever without its origin.
         self.target.put_origin(origin)?;
         self.target.put(file)
     }
@@ -46,7 +46,7 @@ impl Recorder {
     fn write<'a>(&mut self, numbers: impl Iterator<Item = &'a f64>) -> csv::Result<()> {
         for number in numbers {
             self.number.clear();
-            // The shortest decimal that reads back as the same bits, with an exponent where it is shorter.
+            // The shortest decimal that reads back as the same bits, with an exponent where that is shorter.
             let _ = write!(self.number, "{number:?}");
             self.csv.write_field(&self.number)?;
         }
@@ -58,7 +58,8 @@ impl Recorder {
     }
 }
 
-/// `t`, then `bob.x` … of all particles, `bob.vx` …, the constraint forces `bob.fx` …, `row.multiplier` …, `link.tension` ….
+/// The names of the columns: `t`, positions `bob.x` …, velocities `bob.vx` …, constraint forces `bob.fx` …,
+/// `row.multiplier` …, `link.tension` ….
 fn columns(system: &System) -> Vec<String> {
     let mut columns = vec!["t".to_owned()];
     for quantity in ["", "v", "f"] {

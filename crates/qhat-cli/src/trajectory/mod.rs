@@ -1,17 +1,19 @@
-//! Trajectories on disk: one row of every array a frame, written as it comes, in place only when all of it is there.
+//! Trajectories on disk: each frame adds one row to every array. The output gets its name when it is complete.
 
 mod csv;
 mod npy;
 mod npz;
+pub(crate) mod stored;
 mod target;
 
 pub(crate) use target::Target;
 
 use crate::failure::Failure;
+use crate::output::ending;
 use qhat::{System, Terms};
 use std::path::Path;
 
-/// What the ending of a file name asks for.
+/// The format of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Format {
     /// Arrays for NumPy.
@@ -22,9 +24,11 @@ pub(crate) enum Format {
 
 impl Format {
     /// The format that the ending of a file name stands for.
+    ///
+    /// # Errors
+    /// Another ending.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("npz") => Ok(Format::Npz),
             Some("csv") => Ok(Format::Csv),
             _ => Err(Failure::input(format!(
@@ -58,7 +62,7 @@ impl Recorder {
         }
     }
 
-    /// Puts the finished files in place; `origin` is a line of JSON that says where the numbers come from.
+    /// Puts the finished files in place, with the origin, a line of JSON.
     pub(crate) fn finish(self, origin: &str) -> Result<(), Failure> {
         match self {
             Recorder::Npz(recorder) => recorder.finish(origin),

@@ -1,33 +1,33 @@
-//! The NPY format, version 1.0: a line of Python that says type and shape, then the numbers.
+//! The NPY format, version 1.0: a header with type and shape in the syntax of Python, then the numbers.
 //! Source: NumPy, "NEP 1 — A simple file format for NumPy arrays" and numpy/lib/format.py.
 
-/// Length of magic, version and the header's own length [bytes].
+/// The length of magic, version and the length of the header [bytes].
 const PREAMBLE: usize = 10;
-/// Data starts at a multiple of this [bytes], so that it can be mapped into memory.
+/// The data starts at a multiple of this [bytes], so that it can be mapped into memory.
 const ALIGNMENT: usize = 64;
 
-/// What comes before the numbers of an array in C order; `descr` is the type as NumPy writes it.
+/// The header of an array in C order. `descr` is the type as NumPy writes it.
 pub(crate) fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
-    // A Python tuple of one needs its comma.
+    // A Python tuple with one entry ends in a comma.
     let comma = if shape.len() == 1 { "," } else { "" };
     let shape = format!("({}{comma})", lengths.join(", "));
     let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
     let unpadded = PREAMBLE + header.len() + 1;
     header.push_str(&" ".repeat(unpadded.next_multiple_of(ALIGNMENT) - unpadded));
     header.push('\n');
-    // An array of three dimensions takes some 100 bytes; 65535 is never in reach.
+    // The header of an array of three dimensions has about 100 bytes, far below 65535.
     let length = u16::try_from(header.len()).unwrap_or(u16::MAX);
     [b"\x93NUMPY\x01\x00", length.to_le_bytes().as_slice(), header.as_bytes()].concat()
 }
 
-/// An array of float64, in bytes as they lie in the file.
+/// The type of little-endian float64.
 pub(crate) const FLOAT64: &str = "<f8";
 
-/// A whole array of texts, which NumPy keeps as UTF-32 of one length, filled up with zeros; `shape` is () or (n,).
+/// A complete array of texts of the shape () or (n,). NumPy keeps texts as UTF-32 of one length, padded with zeros.
 pub(crate) fn texts(shape: &[usize], texts: &[impl AsRef<str>]) -> Vec<u8> {
     let longest = texts.iter().map(|text| text.as_ref().chars().count()).max().unwrap_or(0);
-    // A type of no characters at all is not one that every NumPy reads.
+    // Some versions of NumPy cannot read texts of length 0.
     let width = longest.max(1);
     let mut bytes = header(&format!("<U{width}"), shape);
     for text in texts {

@@ -1,7 +1,7 @@
-//! NPZ: a zip of one NPY file an array, as `numpy.load` reads it, without pickles.
+//! NPZ: a zip with an NPY file for each array, as `numpy.load` reads it, without pickles.
 //!
-//! How many frames there will be is not known before the end (a run may diverge), and an NPY file tells its shape at the
-//! start; so each array grows in a file of its own, and the zip is put together at the end.
+//! An NPY file begins with its shape, and the number of frames is known only at the end, because a run may diverge. So
+//! each array grows in a file of its own, and the zip is written at the end.
 
 use super::npy;
 use super::target::Target;
@@ -12,13 +12,14 @@ use std::io::{self, BufReader, BufWriter, Seek, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// From this size on a member of a zip needs the wide headers [bytes]; small ones are left readable for simple readers.
+/// The size from which on a member of a zip gets 64-bit headers [bytes]. Simple readers cannot read such headers, so
+/// that smaller members have none.
 const WIDE: u64 = u32::MAX as u64 / 2;
 
-/// One array, growing by a row a frame.
+/// One array; each frame adds a row.
 struct Array {
     name: &'static str,
-    /// Of one row.
+    /// The shape of one row.
     shape: Vec<usize>,
     file: BufWriter<File>,
 }
@@ -77,7 +78,7 @@ impl Recorder {
     pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
         let target = self.target;
         let file = target.temporary()?;
-        // The bytes depend on the scene and the settings alone, so that two runs can be compared: no time of writing.
+        // The bytes depend on the scene and the settings alone, so that two runs can be compared. They hold no date.
         let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
         let pack = || -> io::Result<()> {
             let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));

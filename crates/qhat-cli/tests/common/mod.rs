@@ -1,8 +1,5 @@
 //! Runs the built command the way a person does, in a folder of its own.
 
-// Each test file uses its own part of this.
-#![allow(dead_code)]
-
 pub(crate) mod npz;
 
 use serde_json::Value;

@@ -1,12 +1,12 @@
-//! `[[bodies]]`: their particles after those of `[[generate]]`, their rods and middles after its links.
+//! `[[bodies]]`: particles of bodies come after those of `[[generate]]`, their rods and midpoints after its links.
 
-use super::loads::Inertia;
+use super::resolve::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::body::{Body, Common};
 use qhat::{Distance, Particle, ParticleId, Relation};
 use std::ops::Range;
 
-/// A body that is still to be held together.
+/// A body whose particles are added and whose rods and midpoints are not.
 pub(super) struct Unheld {
     body: qhat::Body,
     ids: Vec<ParticleId>,
@@ -14,7 +14,7 @@ pub(super) struct Unheld {
 }
 
 impl Assembly<'_, '_, '_> {
-    /// Adds the particles of all bodies; `None` when one of them cannot be, so that references to it would mislead.
+    /// Adds the particles of all bodies; `None` after an error, because later errors about missing ids would mislead.
     pub(super) fn add_bodies(&mut self, bodies: &[Body]) -> Option<Vec<Unheld>> {
         let mut unheld = Vec::new();
         for (index, body) in bodies.iter().enumerate() {
@@ -41,7 +41,7 @@ impl Assembly<'_, '_, '_> {
         let mut ids = Vec::with_capacity(made.points.len());
         for (i, ((x, v), &mass)) in made.points.iter().zip(&velocities).zip(&made.masses).enumerate() {
             if !x.iter().chain(v).all(|number| number.is_finite()) {
-                let message = "the places or velocities of this body's particles are not finite numbers";
+                let message = "the positions or velocities of this body's particles are not finite numbers";
                 self.report.error(place, message, Some("use smaller numbers".into()));
                 return None;
             }
@@ -61,16 +61,16 @@ impl Assembly<'_, '_, '_> {
         Some(Unheld { body: made, ids, prefix: prefix.to_owned() })
     }
 
-    /// Adds what holds the particles of all bodies together.
+    /// Adds the rods and midpoints of all bodies.
     pub(super) fn hold_bodies(&mut self, unheld: &[Unheld]) {
         for Unheld { body, ids, prefix } in unheld {
             for (rod, &[a, b]) in body.rods.iter().enumerate() {
-                let name = self.free_constraint_name(format!("{prefix}{a}-{prefix}{b}"));
+                let name = self.free_name(format!("{prefix}{a}-{prefix}{b}"));
                 let [a, b] = [a, b].map(|end| ids[end]);
                 self.builder.constraint(name, Distance::new(a, b, body.length(rod)));
             }
             for &[middle, a, b] in &body.midpoints {
-                let name = self.free_constraint_name(format!("midpoint({prefix}{middle})"));
+                let name = self.free_name(format!("midpoint({prefix}{middle})"));
                 let [middle, a, b] = [middle, a, b].map(|particle| ids[particle]);
                 self.builder.constraint(name, Relation::midpoint(middle, a, b));
             }

@@ -1,41 +1,35 @@
-//! `[[constraints]]` that act on one side, and whether the start respects them.
+//! `[[constraints]]` that act on one side, and the check that the start respects them.
 
 use super::{Assembly, Places};
 use crate::model::contact::{Ball, Box, HalfSpace, Limits, Rope};
-use crate::model::{Id, Name};
+use crate::model::{Id, Name, Named};
 use crate::report::Report;
 use crate::tree::Node;
 use qhat::{Obstacle, Settings, State, StepError, Surface, System};
 
 impl Assembly<'_, '_, '_> {
-    pub(super) fn add_rope(&mut self, rope: &Rope, place: &Node) -> Option<()> {
-        let (a, b) = self.pair(&rope.between, place)?;
-        let length = match rope.length {
+    pub(super) fn add_rope(&mut self, it: &Rope, place: &Node) -> Option<()> {
+        let (a, b) = self.pair(&it.between, place.key("between"))?;
+        let length = match it.length {
             Some(length) => length,
-            None => self.measured_length("rope", &rope.between, (a, b), place)?,
+            None => self.measured_length("rope", &it.between, (a, b), place)?,
         };
-        let Rope { restitution, breaks_at, .. } = *rope;
-        let limits = qhat::Limits { restitution, breaks_at, ..qhat::Limits::rope(a, b, length) };
-        self.add_limited(rope.id.as_ref(), "rope", &rope.between, limits, place);
-        Some(())
+        let Rope { restitution, breaks_at, .. } = *it;
+        self.add_placed(it, qhat::Limits { restitution, breaks_at, ..qhat::Limits::rope(a, b, length) }, place)
     }
 
-    pub(super) fn add_limits(&mut self, limits: &Limits, place: &Node) -> Option<()> {
-        let (a, b) = self.pair(&limits.between, place)?;
-        let Limits { shortest, longest, restitution, breaks_at, .. } = *limits;
-        let limited = qhat::Limits { a, b, shortest, longest, restitution, breaks_at };
-        self.add_limited(limits.id.as_ref(), "limits", &limits.between, limited, place);
-        Some(())
+    pub(super) fn add_limits(&mut self, it: &Limits, place: &Node) -> Option<()> {
+        let (a, b) = self.pair(&it.between, place.key("between"))?;
+        let Limits { shortest, longest, restitution, breaks_at, .. } = *it;
+        self.add_placed(it, qhat::Limits { a, b, shortest, longest, restitution, breaks_at }, place)
     }
 
-    fn add_limited(&mut self, id: Option<&Name>, kind: &str, between: &[Id; 2], limits: qhat::Limits, place: &Node) {
-        let [Id(one), Id(other)] = between;
-        let name = match id {
-            Some(Name(name)) => name.clone(),
-            None => self.free_constraint_name(format!("{kind}({one}-{other})")),
-        };
+    /// Adds limits, and keeps their place in the text for errors of the engine about the start.
+    fn add_placed(&mut self, it: &impl Named, limits: qhat::Limits, place: &Node) -> Option<()> {
+        let name = self.name_of(it);
         self.places.insert(name.clone(), place.span.clone());
         self.builder.constraint(name, limits);
+        Some(())
     }
 
     pub(super) fn add_half_space(&mut self, it: &HalfSpace, place: &Node) -> Option<()> {
@@ -45,29 +39,17 @@ impl Assembly<'_, '_, '_> {
         let offset = normal.iter().zip(through).map(|(n, x)| n * x).sum::<f64>() / length;
         if !(length > 0.0 && offset.is_finite()) {
             let message = "this `normal` has no direction that can be measured";
-            let help = "give a vector about as long as 1, as in `normal = [0.0, 1.0]`".to_owned();
+            let help = "give a vector of a length near 1, as in `normal = [0.0, 1.0]`".to_owned();
             self.report.error(place.key("normal").span.clone(), message, Some(help));
             return None;
         }
         let surface = Surface::HalfSpace { normal, offset };
-        self.add_barriers(
-            (it.id.as_ref(), "half-space"),
-            it.particles.as_deref(),
-            surface,
-            (it.restitution, it.friction),
-            place,
-        )
+        self.add_obstacles(it, it.particles.as_deref(), surface, (it.restitution, it.friction), place)
     }
 
     pub(super) fn add_ball(&mut self, it: &Ball, place: &Node) -> Option<()> {
         let surface = Surface::Ball { center: it.center.padded(), radius: it.radius, inside: it.inside };
-        self.add_barriers(
-            (it.id.as_ref(), "ball"),
-            it.particles.as_deref(),
-            surface,
-            (it.restitution, it.friction),
-            place,
-        )
+        self.add_obstacles(it, it.particles.as_deref(), surface, (it.restitution, it.friction), place)
     }
 
     pub(super) fn add_box(&mut self, it: &Box, place: &Node) -> Option<()> {
@@ -77,31 +59,25 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("size").item(k).span.clone(), message, Some(help));
             return None;
         }
-        // In the plane the third is not looked at, and must only be positive.
+        // In the plane the engine checks that the third number is positive, and does not use it.
         let half = std::array::from_fn(|k| it.size.0.get(k).map_or(1.0, |size| 0.5 * size));
         let surface = Surface::Box { center: it.center.padded(), half };
-        self.add_barriers(
-            (it.id.as_ref(), "box"),
-            it.particles.as_deref(),
-            surface,
-            (it.restitution, it.friction),
-            place,
-        )
+        self.add_obstacles(it, it.particles.as_deref(), surface, (it.restitution, it.friction), place)
     }
 
-    /// One barrier for each particle, named after both.
-    fn add_barriers(
+    /// Adds an obstacle for each particle, named after both.
+    fn add_obstacles(
         &mut self,
-        (id, kind): (Option<&Name>, &str),
+        it: &impl Named,
         particles: Option<&[Id]>,
         surface: Surface,
         (restitution, friction): (f64, f64),
         place: &Node,
     ) -> Option<()> {
-        let stem = id.map_or(kind, |Name(name)| name);
-        for particle in self.those_or_all(particles, place)? {
+        let stem = it.id().map_or_else(|| it.default_name(), |Name(name)| name.clone());
+        for particle in self.listed_or_free(particles, place)? {
             let name = format!("{stem}({})", self.builder.name(particle));
-            let name = self.free_constraint_name(name);
+            let name = self.free_name(name);
             self.places.insert(name.clone(), place.span.clone());
             self.builder.constraint(name, Obstacle { particle, surface: surface.clone(), restitution, friction });
         }
@@ -109,7 +85,7 @@ impl Assembly<'_, '_, '_> {
     }
 }
 
-/// Tells what the start, or the choice of the integrator, has against contacts.
+/// Reports contacts that the start violates, and an integrator that cannot find events.
 pub(super) fn check_start(
     system: &System,
     state: &State,

@@ -1,12 +1,12 @@
-//! Numbers that may follow the time, and constraints whose number is measured at the start where it is left out.
+//! Driven numbers, and constraints whose number is measured at the start where it is left out.
 
 use super::Assembly;
-use crate::model::{Driven, DrivenVector, Parameters};
+use crate::model::{Driven, DrivenVector, Named, Parameters};
 use crate::tree::Node;
 use qhat::{Constraint, Purpose};
 
 impl Assembly<'_, '_, '_> {
-    /// The number or function of t. A text without t is the number it stands for.
+    /// The number or function of t. A text without t becomes the number that it stands for.
     pub(super) fn schedule(&mut self, driven: &Driven, place: &Node) -> Option<qhat::Driven> {
         match driven {
             Driven::Number(number) => Some(qhat::Driven::Constant(*number)),
@@ -18,7 +18,7 @@ impl Assembly<'_, '_, '_> {
         }
     }
 
-    /// As the engine takes points: z = 0 in two dimensions.
+    /// Three driven numbers, as the engine takes points: z = 0 in two dimensions.
     pub(super) fn schedules(&mut self, driven: &DrivenVector, place: &Node) -> Option<[qhat::Driven; 3]> {
         let mut schedules = [0.0; 3].map(qhat::Driven::Constant);
         let mut complete = true;
@@ -31,7 +31,7 @@ impl Assembly<'_, '_, '_> {
         complete.then_some(schedules)
     }
 
-    /// Those that are given, else the numbers of the start.
+    /// The driven numbers that the scene gives, or else those at the start.
     pub(super) fn schedules_or(
         &mut self,
         driven: Option<&DrivenVector>,
@@ -44,30 +44,30 @@ impl Assembly<'_, '_, '_> {
         }
     }
 
-    /// Adds a constraint made for what is given, or for what it has at the start.
+    /// Adds a constraint for the number that the scene gives, or for the number that it has at the start. `place` is
+    /// the table of the constraint and the key of the number.
     pub(super) fn add_driven(
         &mut self,
-        name: String,
-        given: &Option<Driven>,
-        place: (&Node, &str),
+        it: &impl Named,
+        given: Option<&Driven>,
+        (table, key): (&Node, &str),
         make: impl Fn(qhat::Driven) -> Constraint,
     ) -> Option<()> {
-        let (table, key) = place;
         let schedule = match given {
             Some(driven) => self.schedule(driven, table.key(key))?,
             None => {
                 let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions);
-                let [measured] = at_start[..] else { unreachable!("what is driven has one row") };
+                let [measured] = at_start[..] else { unreachable!("a driven constraint has one row") };
                 if !measured.is_finite() {
-                    let message = format!("what `{key}` is at the start cannot be measured");
-                    let help =
-                        "move apart particles that are at the same place, or bring nearer what is too far".to_owned();
-                    self.report.error(table.span.clone(), message, Some(help));
+                    let message = format!("`{key}` cannot be measured at the start");
+                    let help = "move apart particles that are at the same place, and nearer those that are too far";
+                    self.report.error(table.span.clone(), message, Some(help.into()));
                     return None;
                 }
                 measured.into()
             }
         };
+        let name = self.name_of(it);
         self.places.insert(name.clone(), table.span.clone());
         self.builder.constraint(name, make(schedule));
         Some(())

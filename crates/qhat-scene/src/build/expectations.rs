@@ -1,4 +1,4 @@
-//! `[expect]`: what it names must exist.
+//! `[expect]`: checks that the particles, rods and constraints exist that it names.
 
 use super::Assembly;
 use crate::model::{Axis, Expect, Id};

@@ -1,7 +1,8 @@
-//! What is written as expressions. Their errors point into the text of the scene.
+//! Constraints, forces and potentials written as expressions. Their errors point into the text of the scene.
 
 use super::Assembly;
-use crate::model::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
+use crate::model::Parameters;
+use crate::model::expression::{self as model, Residual};
 use crate::report::Report;
 use crate::suggest::nearest;
 use crate::tree::{Node, Value};
@@ -9,7 +10,7 @@ use qhat::expression::check_parameter;
 use qhat::{Expression, Purpose, Scope, State};
 use std::ops::Range;
 
-/// A force or potential that has yet to show that it is a number where the scene starts.
+/// A force or potential whose value at the start has yet to be checked, and its place in the text.
 pub(super) struct Untried {
     expression: Expression,
     place: Range<usize>,
@@ -22,21 +23,21 @@ impl Untried {
         let (by_position, by_velocity) = slopes.split_at_mut(expression.gradient_len());
         let value = expression.gradient(state.positions(), state.velocities(), 0.0, by_position, by_velocity);
         if !value.is_finite() || slopes.iter().any(|slope| !slope.is_finite()) {
-            let message = "this or a derivative of it is not a finite number at the start";
-            let help = "it must have a value where the particles start, at t = 0";
+            let message = "this expression or a derivative of it is not a finite number at the start";
+            let help = "the expression must have a value at t = 0 and the positions at the start";
             report.error(place.clone(), message, Some(help.into()));
         }
     }
 }
 
 impl Assembly<'_, '_, '_> {
-    pub(super) fn add_expression_constraint(&mut self, given: &ExpressionConstraint, place: &Node) -> Option<()> {
+    pub(super) fn add_expression(&mut self, given: &model::Expression, place: &Node) -> Option<()> {
         self.check_parameters(&given.parameters, place)?;
         let (texts, is_list) = match &given.residual {
             Residual::One(text) => (std::slice::from_ref(text), false),
             Residual::Several(texts) => (&texts[..], true),
         };
-        let name = self.name_of(given.id.as_ref(), "expression".into());
+        let name = self.name_of(given);
         let place = place.key("residual");
         for (k, text) in texts.iter().enumerate() {
             let place = place.item(k);
@@ -47,13 +48,13 @@ impl Assembly<'_, '_, '_> {
                 None => constraint,
             };
             if let Err(reason) = constraint.check() {
-                // The number of a scale has passed the schema: what is wrong is one of these.
+                // The scale is above 0, as the schema asks, so that one of these three is wrong.
                 let help = if constraint.expression().particles().is_empty() {
                     "write it in the coordinates of particles"
                 } else if given.scale.is_none() && constraint.with_scale(1.0).check().is_ok() {
                     "add `scale`, the size of the residual that counts as a relative error of 1"
                 } else {
-                    "C(q, t) and its derivatives must be finite numbers where the particles start, at t = 0"
+                    "C(q, t) and its derivatives must be finite numbers at t = 0 and the positions at the start"
                 };
                 self.report.error(place.span.clone(), reason.to_string(), Some(help.into()));
                 return None;
@@ -64,7 +65,7 @@ impl Assembly<'_, '_, '_> {
         Some(())
     }
 
-    pub(super) fn add_expression_force(&mut self, given: &ExpressionForce, place: &Node) -> Option<()> {
+    pub(super) fn add_expression_force(&mut self, given: &model::Force, place: &Node) -> Option<()> {
         let particle = self.particle(&given.particle, place.key("particle"))?;
         self.check_parameters(&given.parameters, place)?;
         let mut components = Vec::new();
@@ -78,12 +79,12 @@ impl Assembly<'_, '_, '_> {
         Some(())
     }
 
-    pub(super) fn add_expression_potential(&mut self, given: &ExpressionPotential, place: &Node) -> Option<()> {
+    pub(super) fn add_expression_potential(&mut self, given: &model::Potential, place: &Node) -> Option<()> {
         self.check_parameters(&given.parameters, place)?;
         let place = place.key("potential");
         let potential = self.expression(&given.potential, Purpose::Potential, &given.parameters, place)?;
         if potential.particles().is_empty() {
-            let message = "the potential depends on no particle, so that it pulls nothing";
+            let message = "the potential depends on no particle and exerts no force";
             self.report.error(place.span.clone(), message, Some("write it in the coordinates of particles".into()));
             return None;
         }
@@ -128,7 +129,7 @@ impl Assembly<'_, '_, '_> {
         None
     }
 
-    /// Takes the parameters of the whole scene that can be ones.
+    /// Takes the parameters of the whole scene; reports those that cannot be parameters.
     pub(super) fn take_parameters(&mut self, parameters: &Parameters) {
         let table = self.tree.key("parameters");
         for (name, &value) in parameters {
@@ -140,7 +141,7 @@ impl Assembly<'_, '_, '_> {
         }
     }
 
-    /// `Some` if the parameters beside an expression can be ones.
+    /// `None` after reporting a parameter beside an expression that cannot be one.
     fn check_parameters(&mut self, parameters: &Parameters, place: &Node) -> Option<()> {
         let mut is_clean = true;
         for (name, &value) in parameters {
@@ -157,7 +158,7 @@ impl Assembly<'_, '_, '_> {
         is_clean.then_some(())
     }
 
-    /// Why this cannot be a parameter, and what to do.
+    /// The reason why this cannot be a parameter, and the help.
     fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
         match check_parameter(name, value) {
             Err(reason) => Some((reason.to_string(), None)),
@@ -177,7 +178,7 @@ fn along_a_curve() -> (String, Option<String>) {
     ("`s` already has a meaning in curves: give the parameter another name".to_owned(), None)
 }
 
-/// Where a key of a table stands.
+/// The place of a key of a table; the place of the table where the key is missing.
 fn key_span(table: &Node, key: &str) -> Range<usize> {
     match &table.value {
         Value::Table(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| entry.key_span.clone()),

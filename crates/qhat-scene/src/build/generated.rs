@@ -1,13 +1,13 @@
-//! `[[generate]]`: particles and what connects them, after those that the file spells out.
+//! `[[generate]]`: particles of blocks come after those of `[[particles]]`, their links after `[[constraints]]`.
 
-use super::loads::Inertia;
+use super::resolve::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::Generate;
 use crate::model::generate::{Common, Link, Plan, RodLink, SpringLink};
 use qhat::{Distance, Particle, ParticleId, Spring};
 use std::ops::Range;
 
-/// What is still to be connected in one block.
+/// A block whose particles are added and whose links are not.
 pub(super) struct Unlinked<'a> {
     link: &'a Link,
     place: Range<usize>,
@@ -17,8 +17,7 @@ pub(super) struct Unlinked<'a> {
 }
 
 impl Assembly<'_, '_, '_> {
-    /// Adds the particles of all blocks; `None` when they ask for too much or for what cannot be, so that references to
-    /// them would mislead.
+    /// Adds the particles of all blocks; `None` after an error, because later errors about missing ids would mislead.
     pub(super) fn add_generated<'g>(&mut self, blocks: &'g [Generate]) -> Option<Vec<Unlinked<'g>>> {
         let mut total = self.positions.len() as u64 / self.dimension as u64;
         let mut unlinked = Vec::new();
@@ -71,7 +70,7 @@ impl Assembly<'_, '_, '_> {
         Some(Unlinked { link, place, ids, names, pairs: links })
     }
 
-    /// Connects the particles of all blocks.
+    /// Adds the links of all blocks.
     pub(super) fn add_links(&mut self, unlinked: &[Unlinked<'_>]) {
         for Unlinked { link, place, ids, names, pairs } in unlinked {
             for &(a, b) in pairs {
@@ -100,7 +99,7 @@ impl Assembly<'_, '_, '_> {
                 return None;
             }
             Link::Rod(RodLink { form, compliance, damping }) => {
-                let name = self.free_constraint_name(format!("{}-{}", a.1, b.1));
+                let name = self.free_name(format!("{}-{}", a.1, b.1));
                 let rod = Distance::new(first, second, length).with_compliance(*compliance, *damping);
                 self.builder.constraint(name, Distance { form: (*form).into(), ..rod });
             }

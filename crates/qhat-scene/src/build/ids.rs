@@ -1,18 +1,21 @@
-//! The ids of the particles: which there are, where each was given, and which was meant.
+//! The ids of the particles: the known ids, their places in the text, and suggestions for an unknown id.
 
 use crate::suggest::nearest;
 use qhat::ParticleId;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The ids of the particles in the order of the alphabet, so that suggestions do not depend on chance.
+/// The ids of the particles in alphabetical order, so that the same scene gives the same suggestions.
 #[derive(Default)]
 pub(super) struct Ids {
     known: BTreeMap<String, (ParticleId, Range<usize>)>,
 }
 
 impl Ids {
-    /// Takes an id; where it is taken already, says where.
+    /// Takes an id.
+    ///
+    /// # Errors
+    /// The place of the first particle with this id.
     pub(super) fn take(&mut self, id: &str, particle: ParticleId, origin: Range<usize>) -> Result<(), Range<usize>> {
         if let Some((_, first)) = self.known.get(id) {
             return Err(first.clone());
@@ -25,12 +28,12 @@ impl Ids {
         self.known.get(id).map(|(particle, _)| *particle)
     }
 
-    /// Where an id was given in the text.
+    /// The place of an id in the text.
     pub(super) fn origin(&self, id: &str) -> Option<Range<usize>> {
         self.known.get(id).map(|(_, origin)| origin.clone())
     }
 
-    /// What to write instead of an id that does not exist.
+    /// The help for an id that does not exist.
     pub(super) fn help(&self, id: &str) -> String {
         if let Some((first, last)) = self.numbered_like(id) {
             return format!("they go from `{first}` to `{last}`");
@@ -44,21 +47,21 @@ impl Ids {
         format!("the particles are {}{rest}", shown.join(", "))
     }
 
-    /// An id in a text whose letters an expression cannot read as a name.
+    /// An id in a text that expressions cannot read as a name, because of its characters.
     pub(super) fn without_name<'a>(&'a self, text: &str) -> Option<&'a str> {
         let is_name =
             |id: &str| id.chars().all(|letter| letter.is_alphabetic() || letter.is_ascii_digit() || letter == '_');
         self.known.keys().map(String::as_str).find(|id| !is_name(id) && text.contains(id))
     }
 
-    /// All ids; those that share the beginning come first: among a thousand of a chain they are the likely ones.
+    /// All ids, those with the same first letter first: the search for a suggestion reads only the first ids.
     pub(super) fn alike(&self, id: &str) -> impl Iterator<Item = &str> {
         let beginning: String = id.chars().take(1).collect();
         let from = self.known.range(beginning.clone()..).map(|(known, _)| known);
         from.take_while(move |known| known.starts_with(&beginning)).chain(self.known.keys()).map(String::as_str)
     }
 
-    /// The first and last of several ids that differ from this one only in their number.
+    /// The first and the last of several ids that differ from this one in their number only.
     fn numbered_like(&self, id: &str) -> Option<(String, String)> {
         let stem = id.trim_end_matches(|letter: char| letter.is_ascii_digit());
         if stem.len() == id.len() {

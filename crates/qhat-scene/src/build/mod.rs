@@ -1,57 +1,65 @@
-//! From the model to the engine's System and State: ids resolved, defaults filled in, and all that one key says about
-//! another checked.
+//! From the model to the engine's System and State: resolves ids, fills in defaults, and checks every condition between
+//! keys. A family of kinds has a file of the same name in `model`.
 
 mod bodies;
-mod connections;
+mod constraints;
 mod contacts;
 mod curves;
 mod driven;
+mod enclosed;
 mod expectations;
 mod expressions;
+mod fields;
 mod generated;
 mod ids;
-mod kinds;
-mod linkages;
+mod incidence;
+mod lengths;
+mod lines;
 mod loads;
 mod particles;
+mod pressure;
+mod resolve;
+mod rods;
+mod springs;
+mod wheels;
 
-use crate::model::{Document, Parameters};
+use crate::model::{Document, Parameters, Step};
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::tree::Node;
 use expressions::Untried;
 use ids::Ids;
-use loads::Inertia;
-use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, ParticleId, Settings, System, SystemBuilder};
+use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
+use resolve::Inertia;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// More would fill the memory of a browser before anyone has seen a frame.
+/// The most particles of a scene. More would fill the memory of a browser before the first frame.
 const MOST_PARTICLES: u64 = 1_000_000;
 
-/// Where in the text each constraint is that the engine may still refuse, by its name.
+/// The places in the text of the constraints that the engine may still refuse, by name.
 type Places = HashMap<String, Range<usize>>;
 
-/// A scene while it is put together.
+/// A scene under construction.
 struct Assembly<'a, 'r, 't> {
     tree: &'a Node,
     report: &'r mut Report<'t>,
     builder: SystemBuilder,
     dimension: usize,
-    /// x [m], flat, for lengths that are left out.
+    /// x of all particles at the start [m], flat, for lengths that are left out.
     positions: Vec<f64>,
-    /// Of each particle, for loads that depend on it.
+    /// The inertia of each particle, for loads that depend on it.
     inertias: Vec<Inertia>,
     ids: Ids,
-    /// What every expression of the scene may refer to.
+    /// The numbers that every expression of the scene may refer to.
     parameters: Parameters,
     constraint_names: HashSet<String>,
-    /// Forces as expressions, to be tried where the scene starts.
+    /// Forces as expressions, whose values at the start have yet to be checked.
     untried: Vec<Untried>,
     places: Places,
 }
 
-/// The scene, or `None` after telling what is wrong with it.
+/// The scene, or `None` after reporting every error.
 pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) -> Option<Scene> {
     let (number, dimension) = if document.dimension == 2 { (2, Dimension::Two) } else { (3, Dimension::Three) };
     let mut assembly = Assembly {
@@ -80,16 +88,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
     if !report.is_empty() {
         return None;
     }
-    let step = &document.step;
-    let settings = Settings {
-        h: step.h,
-        integrator: step.integrator.0,
-        tolerance: step.tolerance,
-        constraint_tolerance: step.constraint_tolerance,
-        frame_budget: step.frame_budget as usize,
-        frame_work: step.frame_work as usize,
-        ..Settings::default()
-    };
+    let settings = settings(&document.step);
     if let Err(error) = settings.check() {
         report.error(tree.key("step").span.clone(), error.to_string(), None);
         return None;
@@ -98,12 +97,25 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
     if !report.is_empty() {
         return None;
     }
-    let Document { name, description, expect, .. } = document;
+    let Document { name, description, expect, step, .. } = document;
     Some(Scene { name, description, system, state, settings, duration: step.duration, expect })
 }
 
+fn settings(step: &Step) -> Settings {
+    Settings {
+        h: step.h,
+        integrator: step.integrator.0,
+        tolerance: step.tolerance,
+        constraint_tolerance: step.constraint_tolerance,
+        max_substeps: step.max_substeps as usize,
+        frame_budget: step.frame_budget as usize,
+        frame_work: step.frame_work as usize,
+        ..Settings::default()
+    }
+}
+
 impl Assembly<'_, '_, '_> {
-    /// Adds everything; `None` when something is wrong with it.
+    /// Adds all tables of the scene; `None` after an error.
     fn add_all(&mut self, document: &Document) -> Option<()> {
         let clean = self.report.is_empty();
         self.take_constraint_names(&document.constraints);
@@ -138,16 +150,9 @@ impl Assembly<'_, '_, '_> {
     fn dimension_of_system(&self) -> Dimension {
         if self.dimension == 2 { Dimension::Two } else { Dimension::Three }
     }
-
-    /// The distance at the start [m].
-    fn distance(&self, a: ParticleId, b: ParticleId) -> f64 {
-        let (d, a, b) = (self.dimension, a.index(), b.index());
-        let squares = (0..d).map(|k| self.positions[a * d + k] - self.positions[b * d + k]).map(|x| x * x);
-        squares.sum::<f64>().sqrt()
-    }
 }
 
-/// Where to point for what only the engine noticed.
+/// The place in the text of an error that only the engine found.
 fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &Places) -> Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),

@@ -1,7 +1,7 @@
 //! `[[particles]]`.
 
 use super::Assembly;
-use super::loads::Inertia;
+use super::resolve::Inertia;
 use crate::model::Particle;
 
 impl Assembly<'_, '_, '_> {

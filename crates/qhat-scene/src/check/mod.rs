@@ -1,24 +1,26 @@
-//! Holds a tree against the schema: keys, types and ranges, all errors at once, each with its place in the text.
+//! Checks a tree against the schema: keys, types and ranges. Reports all errors at once, each with its place in the
+//! text.
 
-mod meaning;
-mod scalar;
+mod misplaced;
+mod number;
+mod schema_node;
+mod table;
+mod text;
 
-use crate::model::PATTERNS;
 use crate::report::Report;
-use crate::suggest::{listed, nearest};
-use crate::tree::{Entry, Node, Value};
-use meaning::Meaning;
+use crate::tree::{Node, Value};
+use schema_node::SchemaNode;
 use serde_json::Value as Json;
 
-/// What of a tree agrees with the schema.
+/// The part of a tree that agrees with the schema.
 pub(crate) struct Checked {
     /// The tree without the keys that do not agree.
     pub(crate) value: Json,
-    /// Whether a table or list had to be left out: what refers to it cannot be judged any more.
+    /// Whether a table or list is left out. Errors about references to it would mislead.
     pub(crate) has_gaps: bool,
 }
 
-/// Holds a tree against the schema; `None` when the scene as a whole does not agree.
+/// Checks a tree against the schema; `None` when a required key of the scene is missing or wrong.
 pub(crate) fn check(tree: &Node, schema: &Json, report: &mut Report<'_>) -> Option<Checked> {
     let dimension = match tree.get("dimension").map(|node| &node.value) {
         Some(Value::Number(number)) if *number == 2.0 => Some(2),
@@ -26,7 +28,7 @@ pub(crate) fn check(tree: &Node, schema: &Json, report: &mut Report<'_>) -> Opti
         _ => None,
     };
     let mut checker = Checker { root: schema, dimension, report, has_gaps: false };
-    let value = checker.value(tree, Meaning::of(schema, schema), "the scene")?;
+    let value = checker.value(tree, SchemaNode::of(schema, schema), "the scene")?;
     Some(Checked { value, has_gaps: checker.has_gaps })
 }
 
@@ -38,122 +40,40 @@ struct Checker<'a, 'r, 't> {
 }
 
 impl<'a> Checker<'a, '_, '_> {
-    /// The value as far as it agrees. `name` is what messages call it.
-    fn value(&mut self, node: &Node, meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        if meaning.is_tagged() {
-            return self.tagged(node, meaning, name);
+    /// The part of a value that agrees. Messages call the value `name`: a key, or a phrase with spaces.
+    fn value(&mut self, node: &Node, schema: SchemaNode<'a>, name: &str) -> Option<Json> {
+        if schema.is_tagged() {
+            return self.tagged(node, schema, name);
         }
-        if let Some(choices) = meaning.choices() {
+        if let Some(choices) = schema.choices() {
             return self.choice(node, name, &choices);
         }
-        if let Some(alternative) = meaning.alternatives().find(|alternative| agrees(alternative.text("type"), node)) {
+        if let Some(alternative) = schema.alternatives().find(|alternative| agrees(alternative.text("type"), node)) {
             return self.value(node, alternative, name);
         }
-        if meaning.is_number_or_text() {
+        if schema.is_number_or_text() {
             return match &node.value {
-                Value::Number(number) => self.number(node, *number, meaning, name),
-                Value::Text(text) => self.text(node, text, meaning, name),
-                _ => self.mismatch(node, meaning, name),
+                Value::Number(number) => self.number(node, *number, schema, name),
+                Value::Text(text) => self.text(node, text, schema, name),
+                _ => self.mismatch(node, schema, name),
             };
         }
-        match (meaning.text("type"), &node.value) {
-            ("object", Value::Table(entries)) if meaning.names(self.root).is_some() => self.map(entries, meaning, name),
-            ("object", Value::Table(entries)) => self.table(node, entries, meaning, name),
-            ("array", Value::List(items)) => self.list(node, items, meaning, name),
-            ("string", Value::Text(text)) => self.text(node, text, meaning, name),
-            ("number" | "integer", Value::Number(number)) => self.number(node, *number, meaning, name),
+        match (schema.text("type"), &node.value) {
+            ("object", Value::Table(entries)) if schema.names(self.root).is_some() => self.map(entries, schema, name),
+            ("object", Value::Table(entries)) => self.table(node, entries, schema, name),
+            ("array", Value::List(items)) => self.list(node, items, schema, name),
+            ("string", Value::Text(text)) => self.text(node, text, schema, name),
+            ("number" | "integer", Value::Number(number)) => self.number(node, *number, schema, name),
             ("boolean", Value::Truth(truth)) => Some(Json::Bool(*truth)),
-            _ => self.mismatch(node, meaning, name),
+            _ => self.mismatch(node, schema, name),
         }
     }
 
-    /// A table whose `kind` says which keys it has.
-    fn tagged(&mut self, node: &Node, meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let Value::Table(entries) = &node.value else { return self.mismatch(node, meaning, name) };
-        let kinds: Vec<&str> = meaning.kinds().map(|(kind, _)| kind).collect();
-        let Some(tag) = node.get("kind") else {
-            let help = format!("add `kind`, {}", listed(&kinds));
-            self.report.error(node.span.clone(), format!("`kind` is missing in {}", called(name)), Some(help));
-            return self.gap();
-        };
-        let given = match &tag.value {
-            Value::Text(given) => given,
-            _ => {
-                let message = format!("`kind` must be text, but is {}", self.found(tag));
-                self.report.error(tag.span.clone(), message, Some(format!("use {}", listed(&kinds))));
-                return self.gap();
-            }
-        };
-        match meaning.kinds().find(|(kind, _)| kind == given) {
-            Some((_, branch)) => self.table(node, entries, Meaning::of(self.root, branch), name),
-            None => {
-                self.unknown_choice(tag, given, "kind", &kinds);
-                self.gap()
-            }
-        }
-    }
-
-    fn table(&mut self, node: &Node, entries: &[Entry], meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let Some(properties) = meaning.properties() else { return self.mismatch(node, meaning, name) };
-        let mut keys: Vec<&str> = properties.keys().map(String::as_str).collect();
-        keys.sort_unstable();
-        let is_root = std::ptr::eq(meaning.schema, self.root);
-        for entry in entries {
-            if properties.contains_key(&entry.key) || self.report.is_full() {
-                continue;
-            }
-            // A misspelt list of particles would make every id unknown.
-            self.has_gaps |= is_root;
-            let help = match nearest(&entry.key, keys.iter().copied()) {
-                Some(key) => format!("did you mean `{key}`?"),
-                None => format!("the keys here are {}", quoted_list(&keys)),
-            };
-            let message = format!("unknown key {} in {}", self.report.quoted(&entry.key), called(name));
-            self.report.error(entry.key_span.clone(), message, Some(help));
-        }
-
-        let required: Vec<&str> = meaning.required().collect();
-        let missing: Vec<&str> = required.iter().copied().filter(|key| node.get(key).is_none()).collect();
-        if !missing.is_empty() {
-            let verb = if missing.len() == 1 { "is" } else { "are" };
-            let message = format!("{} {verb} missing in {}", quoted_list(&missing), called(name));
-            let helps = missing.iter().filter_map(|key| Some(Meaning::of(self.root, properties.get(*key)?).help(key)));
-            let help = helps.collect::<Vec<_>>().join("\n      ");
-            self.report.error(node.span.clone(), message, Some(help));
-        }
-
-        let mut table = serde_json::Map::new();
-        let mut complete = missing.is_empty();
-        for (key, schema) in properties {
-            let Some(child) = node.get(key) else { continue };
-            match self.value(child, Meaning::of(self.root, schema), key) {
-                Some(value) => {
-                    table.insert(key.clone(), value);
-                }
-                None => complete &= !required.contains(&key.as_str()),
-            }
-        }
-        if complete { Some(Json::Object(table)) } else { self.gap() }
-    }
-
-    /// A table whose keys are names that the scene gives.
-    fn map(&mut self, entries: &[Entry], meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let inner = meaning.names(self.root)?;
-        let mut map = serde_json::Map::new();
-        for entry in entries {
-            if let Some(value) = self.value(&entry.node, inner, &format!("{name}[{}]", self.report.fitted(&entry.key)))
-            {
-                map.insert(entry.key.clone(), value);
-            }
-        }
-        if map.len() == entries.len() { Some(Json::Object(map)) } else { self.gap() }
-    }
-
-    fn list(&mut self, node: &Node, items: &[Node], meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let Some(inner) = meaning.entry(self.root) else { return self.mismatch(node, meaning, name) };
-        let (least, most) = match self.dimension.filter(|_| meaning.is_vector()) {
+    fn list(&mut self, node: &Node, items: &[Node], schema: SchemaNode<'a>, name: &str) -> Option<Json> {
+        let Some(inner) = schema.entry(self.root) else { return self.mismatch(node, schema, name) };
+        let (least, most) = match self.dimension.filter(|_| schema.is_vector()) {
             Some(dimension) => (dimension as u64, dimension as u64),
-            None => (meaning.whole("minItems").unwrap_or(0), meaning.whole("maxItems").unwrap_or(u64::MAX)),
+            None => (schema.whole("minItems").unwrap_or(0), schema.whole("maxItems").unwrap_or(u64::MAX)),
         };
         if !(least..=most).contains(&(items.len() as u64)) {
             let wanted = match most {
@@ -162,7 +82,7 @@ impl<'a> Checker<'a, '_, '_> {
                 most => format!("{least} to {most}"),
             };
             let message = format!("`{name}` must have {wanted} entries, but has {}", items.len());
-            self.report.error(node.span.clone(), message, Some(self.help(meaning, name)));
+            self.report.error(node.span.clone(), message, Some(self.help(schema, name)));
             return None;
         }
         let is_list_of_tables = inner.is_tagged() || inner.properties().is_some();
@@ -186,64 +106,27 @@ impl<'a> Checker<'a, '_, '_> {
         }
     }
 
-    fn text(&mut self, node: &Node, text: &str, meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let length = text.chars().count() as u64;
-        let (least, most) = (meaning.whole("minLength").unwrap_or(0), meaning.whole("maxLength").unwrap_or(u64::MAX));
-        if !(least..=most).contains(&length) {
-            let message = format!("`{name}` must have {least} to {most} characters, but has {length}");
-            self.report.error(node.span.clone(), message, Some(meaning.help(name)));
-            return None;
-        }
-        let pattern = PATTERNS.iter().find(|pattern| pattern.regex == meaning.text("pattern"));
-        if let Some(pattern) = pattern.filter(|pattern| !(pattern.agrees)(text)) {
-            let message = format!("{} cannot be `{name}`", self.report.quoted(text));
-            self.report.error(node.span.clone(), message, Some(format!("use {}", pattern.words)));
-            return None;
-        }
-        Some(Json::String(text.to_owned()))
-    }
-
-    fn choice(&mut self, node: &Node, name: &str, choices: &[&str]) -> Option<Json> {
-        let Value::Text(given) = &node.value else {
-            let message = format!("`{name}` must be text, but is {}", self.found(node));
-            self.report.error(node.span.clone(), message, Some(format!("use {}", listed(choices))));
-            return None;
-        };
-        if choices.contains(&given.as_str()) {
-            return Some(Json::String(given.clone()));
-        }
-        self.unknown_choice(node, given, name, choices);
-        None
-    }
-
-    fn unknown_choice(&mut self, node: &Node, given: &str, name: &str, choices: &[&str]) {
-        let quoted = self.report.quoted(given);
-        let list = listed(choices);
-        let help = match nearest(given, choices.iter().copied()) {
-            Some(choice) if choices.len() > 1 => format!("did you mean `{choice}`? it is {list}"),
-            _ => format!("use {list}"),
-        };
-        self.report.error(node.span.clone(), format!("unknown {name} {quoted}"), Some(help));
-    }
-
-    fn mismatch(&mut self, node: &Node, meaning: Meaning<'a>, name: &str) -> Option<Json> {
-        let message = format!("{} must be {}, but is {}", called(name), meaning.type_in_words(), self.found(node));
-        let help = (!name.contains(' ')).then(|| self.help(meaning, name));
+    /// Reports a value of another type than the schema asks for.
+    fn mismatch(&mut self, node: &Node, schema: SchemaNode<'a>, name: &str) -> Option<Json> {
+        let message = format!("{} must be {}, but is {}", called(name), schema.type_in_words(), self.found(node));
+        let help = (!name.contains(' ')).then(|| self.help(schema, name));
         self.report.error(node.span.clone(), message, help);
-        if meaning.is_tagged() || matches!(meaning.text("type"), "object" | "array") { self.gap() } else { None }
+        if schema.is_tagged() || matches!(schema.text("type"), "object" | "array") { self.gap() } else { None }
     }
 
-    fn help(&self, meaning: Meaning<'a>, name: &str) -> String {
-        let dimension = self.dimension.filter(|_| meaning.is_vector());
-        let entries = if meaning.entry(self.root).is_some_and(|entry| entry.text("type") == "string") {
+    /// What a key is, with the number of entries that the dimension asks for.
+    fn help(&self, schema: SchemaNode<'a>, name: &str) -> String {
+        let dimension = self.dimension.filter(|_| schema.is_vector());
+        let entries = if schema.entry(self.root).is_some_and(|entry| entry.text("type") == "string") {
             "texts"
         } else {
             "numbers"
         };
         let numbers = dimension.map(|d| format!("; {d} {entries}, as the dimension is {d}"));
-        format!("{}{}", meaning.help(name), numbers.unwrap_or_default())
+        format!("{}{}", schema.help(name), numbers.unwrap_or_default())
     }
 
+    /// The value in the scene, in words.
     fn found(&self, node: &Node) -> String {
         match &node.value {
             Value::Text(text) => format!("the text {}", self.report.quoted(text)),
@@ -255,6 +138,7 @@ impl<'a> Checker<'a, '_, '_> {
         }
     }
 
+    /// Notes that a table or list is left out.
     fn gap<T>(&mut self) -> Option<T> {
         self.has_gaps = true;
         None
@@ -266,12 +150,7 @@ fn agrees(kind: &str, node: &Node) -> bool {
     matches!((kind, &node.value), ("string", Value::Text(_)) | ("array", Value::List(_)))
 }
 
-/// A key in backticks; a phrase as it is.
+/// A key in backticks; a phrase unchanged.
 fn called(name: &str) -> String {
     if name.contains(' ') { name.to_owned() } else { format!("`{name}`") }
-}
-
-fn quoted_list(keys: &[&str]) -> String {
-    let quoted: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
-    quoted.join(", ")
 }

@@ -1,4 +1,4 @@
-//! `[[bodies]]`: rigid bodies, each a few particles and the rods between them. The engine's `Body` derives which.
+//! `[[bodies]]`: rigid bodies, each made of a few particles and rods, which the engine's `Body` derives.
 
 use super::{Id, Vector};
 use qhat::BodyError;
@@ -19,41 +19,41 @@ pub(crate) enum Body {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bar {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
-    /// The mass of the whole [kg], above 0.
+    /// The mass of the body [kg], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) mass: f64,
-    /// Where one end starts [m].
+    /// The position of one end at the start [m].
     pub(crate) from: Vector,
-    /// Where the other end starts [m].
+    /// The position of the other end at the start [m].
     pub(crate) to: Vector,
-    /// The velocity of its centre at the start [m/s]; at rest if left out.
+    /// The velocity of the centre at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// How it turns at the start [rad/s]: one number in the plane, three in space; not if left out.
+    /// The angular velocity at the start [rad/s]: one number in the plane, three in space; zero if left out.
     #[serde(default)]
     pub(crate) spin: Option<Turning>,
 }
 
-/// What is uniform over one edge (a thin bar), two (a plate) or three (a block).
+/// A uniform body that spans one edge (a thin bar), two edges (a plate) or three (a block).
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Block {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
-    /// The mass of the whole [kg], above 0.
+    /// The mass of the body [kg], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) mass: f64,
-    /// Where its centre starts [m].
+    /// The position of the centre at the start [m].
     pub(crate) center: Vector,
-    /// Its edges [m], one to three vectors that do not lie in one line or plane.
+    /// The edges [m], one to three vectors that do not lie in one line or plane.
     #[schemars(length(min = 1, max = 3))]
     pub(crate) edges: Vec<Vector>,
-    /// The velocity of its centre at the start [m/s]; at rest if left out.
+    /// The velocity of the centre at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// How it turns at the start [rad/s]: one number in the plane, three in space; not if left out.
+    /// The angular velocity at the start [rad/s]: one number in the plane, three in space; zero if left out.
     #[serde(default)]
     pub(crate) spin: Option<Turning>,
 }
@@ -62,39 +62,40 @@ pub(crate) struct Block {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Triangle {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
-    /// The mass of the whole [kg], above 0.
+    /// The mass of the body [kg], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) mass: f64,
-    /// Where its corners start [m].
+    /// The positions of the corners at the start [m].
     pub(crate) corners: [Vector; 3],
-    /// The velocity of its centre at the start [m/s]; at rest if left out.
+    /// The velocity of the centre at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// How it turns at the start [rad/s]: one number in the plane, three in space; not if left out.
+    /// The angular velocity at the start [rad/s]: one number in the plane, three in space; zero if left out.
     #[serde(default)]
     pub(crate) spin: Option<Turning>,
 }
 
-/// A body of which the moments of inertia about its centre are known.
+/// A body given by the moments of inertia about its centre.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Inertia {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
-    /// The mass of the whole [kg], above 0.
+    /// The mass of the body [kg], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) mass: f64,
-    /// Where its centre starts [m].
+    /// The position of the centre at the start [m].
     pub(crate) center: Vector,
-    /// Its moments of inertia about the centre [kg m²]: one number in the plane; in space xx, yy, zz, or xx, yy, zz, xy, xz, yz.
+    /// The moments of inertia about the centre [kg m²]: one number in the plane; in space xx, yy, zz, or xx, yy, zz,
+    /// xy, xz, yz.
     #[schemars(length(min = 1, max = 6))]
     pub(crate) inertia: Vec<f64>,
-    /// The velocity of its centre at the start [m/s]; at rest if left out.
+    /// The velocity of the centre at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// How it turns at the start [rad/s]: one number in the plane, three in space; not if left out.
+    /// The angular velocity at the start [rad/s]: one number in the plane, three in space; zero if left out.
     #[serde(default)]
     pub(crate) spin: Option<Turning>,
 }
@@ -104,7 +105,7 @@ pub(crate) struct Inertia {
 #[serde(transparent)]
 pub(crate) struct Turning(#[schemars(length(min = 1, max = 3))] pub(crate) Vec<f64>);
 
-/// Why a block of `bodies` makes none, and the key that says so.
+/// The reason why an entry of `bodies` makes no body, and the key that is at fault.
 pub(crate) struct Refusal {
     pub(crate) key: &'static str,
     pub(crate) message: String,
@@ -112,7 +113,7 @@ pub(crate) struct Refusal {
 }
 
 impl Body {
-    /// The particles and rods.
+    /// The particles and rods of the body.
     pub(crate) fn make(&self, dimension: usize) -> Result<qhat::Body, Refusal> {
         let refused =
             |key: &'static str| move |error: BodyError| Refusal { key, message: error.to_string(), help: help(key) };
@@ -151,7 +152,7 @@ impl Body {
         }
     }
 
-    /// ω [rad/s], about z in the plane.
+    /// ω at the start [rad/s]; (0, 0, ω) in the plane.
     pub(crate) fn spin(&self, dimension: usize) -> Result<[f64; 3], Refusal> {
         match (dimension, self.common().spin.map(|Turning(spin)| spin.as_slice())) {
             (_, None) => Ok([0.0; 3]),
@@ -160,14 +161,15 @@ impl Body {
             (_, Some(given)) => {
                 let wanted = if dimension == 2 { "1 number in the plane" } else { "3 numbers in space" };
                 let message = format!("`spin` must have {wanted}, but has {}", given.len());
-                let help = "`spin` is how the body turns [rad/s]: about z in the plane, a vector in space";
+                let help =
+                    "`spin` is the angular velocity of the body [rad/s]: one number in the plane, a vector in space";
                 Err(Refusal { key: "spin", message, help })
             }
         }
     }
 }
 
-/// What is the same for every kind.
+/// The keys that every kind has.
 pub(crate) struct Common<'a> {
     pub(crate) prefix: &'a str,
     /// v of the centre [m/s].
@@ -196,8 +198,8 @@ kinds!(Bar, Block, Triangle, Inertia);
 fn help(key: &str) -> &'static str {
     match key {
         "to" => "give the bar two different ends",
-        "edges" => "a long bar is one edge, a plate two, a block three, none of which follows from the others",
-        "corners" => "give the triangle three corners that are not in a line",
+        "edges" => "a bar has one edge, a plate two, a block three; they must not lie in one line or plane",
+        "corners" => "give the triangle three corners that are not in one line",
         _ => {
             "`inertia` [kg m²] is one moment in the plane; in space xx, yy, zz, or xx, yy, zz, xy, xz, yz of the tensor"
         }

@@ -1,77 +1,82 @@
-//! `[[constraints]]` that act on one side: ropes, limits, and what particles stay out of, or within.
+//! `[[constraints]]` that act on one side: ropes, limits of a distance, and obstacles.
 
+use super::constraint::named;
 use super::{Id, Name, Vector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A rope: slack up to its length, and then it does not stretch.
+/// A rope: slack up to its length, rigid at its length.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Rope {
-    /// Its name in reports; `rope(a-b)` if left out.
+    /// The name of the rope in reports; `rope(a-b)` if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
-    /// The ids of the two particles at its ends.
+    /// The ids of the two particles at the ends of the rope.
     pub(crate) between: [Id; 2],
-    /// Its length [m], above 0; the distance at the start if left out.
+    /// The length of the rope [m], above 0; the distance at the start if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) length: Option<f64>,
-    /// The part of the closing speed that comes back where it jerks taut, 0 to 1.
+    /// The coefficient of restitution when the rope becomes taut, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(crate) restitution: f64,
-    /// The tension at which it breaks [N], above 0; none if left out.
+    /// The tension at which the rope breaks [N], above 0; the rope never breaks if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
 }
 
-/// A distance between two limits, or with one of them.
+named!(Rope, it => format!("rope({}-{})", it.between[0].0, it.between[1].0));
+
+/// A distance between two limits, or with one limit.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Limits {
-    /// Its name in reports; `limits(a-b)` if left out.
+    /// The name of the constraint in reports; `limits(a-b)` if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
     /// The ids of the two particles.
     pub(crate) between: [Id; 2],
-    /// How near they may come [m], above 0; as near as they like if left out.
+    /// The shortest distance allowed [m], above 0; no limit if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) shortest: Option<f64>,
-    /// How far apart they may go [m], above 0; as far as they like if left out.
+    /// The longest distance allowed [m], above 0; no limit if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) longest: Option<f64>,
-    /// The part of the closing speed that comes back where a limit is hit, 0 to 1.
+    /// The coefficient of restitution at a limit, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(crate) restitution: f64,
-    /// The tension or thrust at which it breaks [N], above 0; none if left out.
+    /// The tension or thrust at which the constraint breaks [N], above 0; the constraint never breaks if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
 }
+
+named!(Limits, it => format!("limits({}-{})", it.between[0].0, it.between[1].0));
 
 /// Particles on one side of a straight line or plane: ground, a wall, a slope.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HalfSpace {
-    /// Its name in reports, with the particle in brackets behind it; `half-space` if left out.
+    /// The name of the obstacle in reports, followed by the particle in brackets; `half-space` if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
-    /// The ids of the particles, each once; all that are not fixed if left out.
+    /// The ids of the particles, each once; all particles that are not fixed if left out.
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub(crate) particles: Option<Vec<Id>>,
-    /// The direction into the side where they stay, of any length; upwards, along y, if left out.
+    /// The normal, a vector of any length into the side where the particles stay; upwards, along y, if left out.
     #[serde(default)]
     pub(crate) normal: Option<Vector>,
     /// A point of the line or plane [m]; the origin if left out.
     #[serde(default)]
     pub(crate) through: Option<Vector>,
-    /// The part of the closing speed that an impact gives back, 0 to 1.
+    /// The coefficient of restitution of an impact, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(crate) restitution: f64,
@@ -80,27 +85,29 @@ pub(crate) struct HalfSpace {
     #[schemars(range(min = 0.0))]
     pub(crate) friction: f64,
 }
+
+named!(HalfSpace, _it => "half-space".to_owned());
 
 /// Particles outside of a circle or sphere, or inside.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Ball {
-    /// Its name in reports, with the particle in brackets behind it; `ball` if left out.
+    /// The name of the obstacle in reports, followed by the particle in brackets; `ball` if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
-    /// The ids of the particles, each once; all that are not fixed if left out.
+    /// The ids of the particles, each once; all particles that are not fixed if left out.
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub(crate) particles: Option<Vec<Id>>,
-    /// Its centre [m].
+    /// The centre of the ball [m].
     pub(crate) center: Vector,
-    /// Its radius [m], above 0.
+    /// The radius of the ball [m], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) radius: f64,
     /// Whether the particles stay inside.
     #[serde(default)]
     pub(crate) inside: bool,
-    /// The part of the closing speed that an impact gives back, 0 to 1.
+    /// The coefficient of restitution of an impact, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(crate) restitution: f64,
@@ -110,22 +117,24 @@ pub(crate) struct Ball {
     pub(crate) friction: f64,
 }
 
+named!(Ball, _it => "ball".to_owned());
+
 /// Particles outside of a box along the axes.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Box {
-    /// Its name in reports, with the particle in brackets behind it; `box` if left out.
+    /// The name of the obstacle in reports, followed by the particle in brackets; `box` if left out.
     #[serde(default)]
     pub(crate) id: Option<Name>,
-    /// The ids of the particles, each once; all that are not fixed if left out.
+    /// The ids of the particles, each once; all particles that are not fixed if left out.
     #[serde(default)]
     #[schemars(length(min = 1))]
     pub(crate) particles: Option<Vec<Id>>,
-    /// Its centre [m].
+    /// The centre of the box [m].
     pub(crate) center: Vector,
-    /// Its size along each axis [m], above 0.
+    /// The size of the box along each axis [m], above 0.
     pub(crate) size: Vector,
-    /// The part of the closing speed that an impact gives back, 0 to 1.
+    /// The coefficient of restitution of an impact, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub(crate) restitution: f64,
@@ -134,3 +143,5 @@ pub(crate) struct Box {
     #[schemars(range(min = 0.0))]
     pub(crate) friction: f64,
 }
+
+named!(Box, _it => "box".to_owned());

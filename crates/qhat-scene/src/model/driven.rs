@@ -1,4 +1,4 @@
-//! Numbers that may follow the time: a number, or an expression of t as text.
+//! Driven numbers: a number, or an expression of t as text.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ impl JsonSchema for Driven {
     }
 }
 
-/// One of them for each dimension.
+/// One driven number for each dimension.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct DrivenVector(

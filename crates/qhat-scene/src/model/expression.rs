@@ -1,5 +1,7 @@
-//! What is written as expressions: `kind = "expression"` of `[[constraints]]`, `kind = "force"` and `"potential"` of `[[loads]]`.
+//! Tables that hold expressions: `kind = "expression"` of `[[constraints]]`, `kind = "force"` and `"potential"` of
+//! `[[loads]]`.
 
+use super::constraint::named;
 use super::{Id, Name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,8 +13,9 @@ pub(crate) type Parameters = BTreeMap<String, f64>;
 /// Expressions of positions and time that stay zero.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ExpressionConstraint {
-    /// Its name in reports; `expression`, with a number behind it where that is taken, if left out.
+pub(crate) struct Expression {
+    /// The name of the constraint in reports; `expression` if left out, with a number behind it where that name is
+    /// taken.
     #[serde(default)]
     pub(crate) id: Option<Name>,
     /// The expression that stays zero, or a list of them.
@@ -20,11 +23,14 @@ pub(crate) struct ExpressionConstraint {
     /// A table of numbers that the expression refers to by name.
     #[serde(default)]
     pub(crate) parameters: Parameters,
-    /// The size of the residual that counts as a relative error of 1, in its own unit, above 0; measured at the start if left out.
+    /// The size of the residual that counts as a relative error of 1, in the unit of the residual, above 0; measured at
+    /// the start if left out.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) scale: Option<f64>,
 }
+
+named!(Expression, _it => "expression".to_owned());
 
 /// One expression or several.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -34,11 +40,11 @@ pub(crate) enum Residual {
     Several(#[schemars(length(min = 1, max = 1000))] Vec<String>),
 }
 
-/// A force on one particle, written as expressions of positions, velocities and time.
+/// A force on one particle, as expressions of positions, velocities and time.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ExpressionForce {
-    /// The id of the particle it acts on.
+pub(crate) struct Force {
+    /// The id of the particle that the force acts on.
     pub(crate) particle: Id,
     /// An expression for each component of the force [N].
     #[schemars(length(min = 2, max = 3), extend("x-length" = "dimension"))]
@@ -48,10 +54,10 @@ pub(crate) struct ExpressionForce {
     pub(crate) parameters: Parameters,
 }
 
-/// A potential energy, written as an expression of positions and time, that pulls every particle in it downhill.
+/// A potential energy, as an expression of positions and time. Every particle in the expression feels the force −∂V/∂q.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ExpressionPotential {
+pub(crate) struct Potential {
     /// The expression of the energy [J].
     pub(crate) potential: String,
     /// A table of numbers that the expression refers to by name.

@@ -1,44 +1,55 @@
-//! The scene file as Rust types: the one list of its keys. The JSON Schema is made from them, the checker follows that
-//! schema, and serde fills them. The first sentence on a key is what help and schema say about it.
+//! The scene file as Rust types, the only list of its keys. The JSON Schema is made from these types, `check` follows
+//! the schema, and serde fills the types. The comment on a key is what the schema and the help of messages say about
+//! it.
 
 pub(crate) mod body;
-mod constraint;
+pub(crate) mod constraint;
 pub(crate) mod contact;
-mod content;
+pub(crate) mod curves;
 mod driven;
+pub(crate) mod enclosed;
 mod expect;
-mod expression;
+pub(crate) mod expression;
+pub(crate) mod fields;
 pub(crate) mod generate;
-pub(crate) mod kinds;
-mod linkage;
+pub(crate) mod incidence;
+mod integrator;
+pub(crate) mod lengths;
+pub(crate) mod lines;
 pub(crate) mod load;
+pub(crate) mod point;
+pub(crate) mod pressure;
+pub(crate) mod rods;
+pub(crate) mod springs;
 mod step;
 mod value;
+pub(crate) mod wheels;
 
-pub(crate) use constraint::{Constraint, Distance, DistanceForm, Nail, NailForm, Spring};
-pub(crate) use content::{Area, Volume};
+pub(crate) use constraint::{Constraint, Named};
 pub(crate) use driven::{Driven, DrivenVector};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
-pub(crate) use expression::{ExpressionConstraint, ExpressionForce, ExpressionPotential, Parameters, Residual};
+pub(crate) use expression::Parameters;
 pub(crate) use generate::Generate;
-pub(crate) use linkage::{Angle, Gears, LengthRatio, Pulley, Rack, Rigid};
+pub use integrator::integrator_names;
+pub(crate) use load::Load;
+pub(crate) use springs::Spring;
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A scene of qhat: particles, what holds them, what acts on them, and how to step. SI units.
+/// A scene of qhat: particles, constraints, forces, and the settings of a run. SI units.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "qhat scene")]
 pub(crate) struct Document {
     /// The version of the format.
     pub(crate) schema: Version,
-    /// The title people see.
+    /// The title of the scene.
     #[schemars(length(min = 1, max = 100))]
     pub(crate) name: String,
-    /// One or two sentences that say what there is to see.
+    /// One or two sentences on what the scene shows.
     #[serde(default)]
     #[schemars(length(max = 2000))]
     pub(crate) description: String,
@@ -48,34 +59,35 @@ pub(crate) struct Document {
     /// A table of numbers that every expression of the scene may refer to by name.
     #[serde(default)]
     pub(crate) parameters: Parameters,
-    /// How to step.
+    /// The table of the settings of a run.
     #[serde(default)]
     pub(crate) step: Step,
-    /// What acts on every particle.
+    /// The table of the forces on every particle, `gravity` and `drag`; forces on single particles stand in
+    /// `[[loads]]`.
     #[serde(default)]
     pub(crate) forces: Forces,
-    /// What holds the constraints under the integrators that do not project.
+    /// The table of the feedback that keeps constraints near zero under integrators that do not project.
     #[serde(default)]
     pub(crate) feedback: Feedback,
-    /// The particles.
+    /// The list of the particles.
     #[serde(default)]
     pub(crate) particles: Vec<Particle>,
-    /// The constraints, which hold exactly.
+    /// The list of the constraints, which hold exactly.
     #[serde(default)]
     pub(crate) constraints: Vec<Constraint>,
-    /// The springs, which give.
+    /// The list of the springs.
     #[serde(default)]
     pub(crate) springs: Vec<Spring>,
-    /// Forces beside gravity, drag and springs.
+    /// The list of the forces beside gravity, drag and springs.
     #[serde(default)]
-    pub(crate) loads: Vec<load::Load>,
-    /// Particles by the dozen, with what connects them.
+    pub(crate) loads: Vec<Load>,
+    /// The list of blocks of many particles with their links, such as chains and nets.
     #[serde(default)]
     pub(crate) generate: Vec<Generate>,
-    /// Rigid bodies of particles and rods.
+    /// The list of the rigid bodies, each made of particles and rods.
     #[serde(default)]
     pub(crate) bodies: Vec<body::Body>,
-    /// What the scene must show; a test holds it to that.
+    /// The table of the results that the scene must show.
     #[serde(default)]
     pub(crate) expect: Option<Expect>,
 }
@@ -83,7 +95,7 @@ pub(crate) struct Document {
 /// The version of the format.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 pub(crate) enum Version {
-    /// The first.
+    /// The first version.
     #[serde(rename = "qhat/1")]
     One,
 }
@@ -92,18 +104,18 @@ pub(crate) enum Version {
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Particle {
-    /// The name by which others refer to it.
+    /// The name by which other tables refer to the particle.
     pub(crate) id: Id,
-    /// Where it starts [m].
+    /// The position at the start [m].
     pub(crate) at: Vector,
-    /// Its mass [kg], above 0.
+    /// The mass [kg], above 0.
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) mass: f64,
-    /// Its velocity at the start [m/s]; at rest if left out.
+    /// The velocity at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// Whether it is held where it starts.
+    /// Whether the particle stays at its position.
     #[serde(default)]
     pub(crate) fixed: bool,
 }

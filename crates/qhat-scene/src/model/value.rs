@@ -1,4 +1,4 @@
-//! The small values that many tables share.
+//! Small values that many tables share: ids, names, vectors.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 const ID: &str = r"^[\p{Alphabetic}_][\p{Alphabetic}\p{N}_]{0,63}$";
 const NAME: &str = r"^[\p{Alphabetic}_][\p{Alphabetic}\p{N}_.()-]{0,127}$";
 
-/// A pattern of the schema, the function that checks it, and what it asks for in words.
+/// A pattern of the schema, the function that checks it, and the pattern in words.
 pub(crate) struct Pattern {
     pub(crate) regex: &'static str,
     pub(crate) agrees: fn(&str) -> bool,
@@ -23,7 +23,7 @@ pub(crate) const PATTERNS: [Pattern; 2] = [
     },
 ];
 
-/// The id of a particle. An identifier, so that an expression can name it.
+/// The id of a particle: an identifier, so that an expression can name the particle.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Id(#[schemars(extend("pattern" = ID))] pub(crate) String);
@@ -39,7 +39,7 @@ pub(crate) struct Name(#[schemars(extend("pattern" = NAME))] pub(crate) String);
 pub(crate) struct Vector(#[schemars(length(min = 2, max = 3), extend("x-length" = "dimension"))] pub(crate) Vec<f64>);
 
 impl Vector {
-    /// As the engine takes points: z = 0 in two dimensions.
+    /// The vector with three components, as the engine takes points: z = 0 in two dimensions.
     pub(crate) fn padded(&self) -> [f64; 3] {
         std::array::from_fn(|k| self.0.get(k).copied().unwrap_or(0.0))
     }

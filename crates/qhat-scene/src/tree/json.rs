@@ -1,4 +1,4 @@
-//! JSON text to a tree. Strict JSON: what other programs cannot read is refused here as well.
+//! JSON text to a tree. Strict JSON only, because other programs refuse the extensions.
 
 use super::{Entry, Node, Value};
 use crate::report::Report;
@@ -20,13 +20,13 @@ const STRICT: ParseOptions = ParseOptions {
     allow_extended_string_escapes: false,
 };
 
-/// The tree of a JSON text, or `None` after telling what is wrong with it.
+/// The tree of a JSON text, or `None` after reporting its errors.
 pub(crate) fn parse(text: &str, report: &mut Report<'_>) -> Option<Node> {
     let collect = CollectOptions { comments: CommentCollectionStrategy::Off, tokens: false };
     match parse_to_ast(text, &collect, &STRICT) {
         Ok(parsed) => {
             let node = parsed.value.map(|ast| node_of(ast, report));
-            // A key given twice leaves open which one is meant.
+            // After a key that is given twice the tree is ambiguous.
             if report.is_empty() { node } else { None }
         }
         Err(error) => {

@@ -1,23 +1,23 @@
-//! What TOML and JSON have in common: one tree of values, each with the bytes of the text it was read from.
+//! One tree of values for TOML and JSON, each value with its place in the text.
 
 pub(crate) mod json;
 pub(crate) mod toml;
 
 use std::ops::Range;
 
-/// A value and where it stands in the text.
+/// A value and its place in the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
-    /// Its bytes in the text.
+    /// The bytes of the value in the text.
     pub(crate) span: Range<usize>,
     pub(crate) value: Value,
 }
 
-/// The kinds of value a scene may hold; `Other` names one that it may not.
+/// A value of a scene. `Other` names a kind of value that no scene may hold, such as a date.
 #[derive(Clone, Debug)]
 pub(crate) enum Value {
     Text(String),
-    /// nan and infinite where the text says so or the number is too large: the reader refuses them.
+    /// A number; nan or infinite where the text says so or the number is too large, which `check` refuses.
     Number(f64),
     Truth(bool),
     List(Vec<Node>),
@@ -42,12 +42,12 @@ impl Node {
         }
     }
 
-    /// The place to point at for a key: its value, or the table where the key was left out.
+    /// The value under a key, or the table where the key is left out: the place for an error about the key.
     pub(crate) fn key(&self, key: &str) -> &Node {
         self.get(key).unwrap_or(self)
     }
 
-    /// The place to point at for an entry of a list.
+    /// The entry of a list, or the list where there is no such entry: the place for an error about the entry.
     pub(crate) fn item(&self, index: usize) -> &Node {
         match &self.value {
             Value::List(items) => items.get(index).unwrap_or(self),

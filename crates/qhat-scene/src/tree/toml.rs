@@ -4,28 +4,29 @@ use super::{Entry, Node, Value};
 use crate::report::Report;
 use toml::de::{DeTable, DeValue};
 
-/// The tree of a TOML text, or `None` after telling what is wrong with it.
+/// The tree of a TOML text, or `None` after reporting its errors.
 pub(crate) fn parse(text: &str, report: &mut Report<'_>) -> Option<Node> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    let mut told = 0;
+    let mut last_line = 0;
     for error in &errors {
         let span = error.span().unwrap_or(0..0);
         let line = report.line_of(span.start);
-        // The parser goes on after an error; what it says next about the same line follows from the first.
-        if line != told {
+        // The parser goes on after an error; later errors in the same line follow from the first.
+        if line != last_line {
             report.error(
                 span.clone(),
                 format!("not valid TOML: {}", in_words(error.message(), text.get(span.start..).unwrap_or_default())),
                 None,
             );
-            told = line;
+            last_line = line;
         }
     }
-    // A repaired tree would bring errors about what the repair lost.
+    // The checks of a repaired tree would report keys that the repair lost.
     errors.is_empty().then(|| Node { span: 0..0, value: table_of(table.get_ref()) })
 }
 
-/// What the parser says, in one line. Where a value is left out it speaks of the last kind of value it tried.
+/// The message of the parser in one line. Where a value is missing, the parser names the last kind of value it tried,
+/// and this function says that the value is missing.
 fn in_words(message: &str, rest: &str) -> String {
     if message.contains("literal string") && rest.trim_start_matches(' ').starts_with(['\n', '\r', '}', ']', ',', '#'])
     {

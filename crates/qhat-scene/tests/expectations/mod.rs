@@ -4,7 +4,8 @@ use qhat::{Event, EventKind, Simulation};
 use qhat_scene::{AtEnd, Axis, Expect, Scene, SpeedAtEnd};
 use std::collections::BTreeSet;
 
-/// Particles up to which lengths are held for long; a larger scene, at tens of milliseconds a frame, for its own duration.
+/// Particles up to which lengths are held for long; a larger scene, at tens of milliseconds a frame, for its own
+/// duration.
 const MOST_FOR_LONG: usize = 2000;
 
 /// Every expectation that fails, in words.
@@ -140,8 +141,9 @@ fn residual_now(simulation: &mut Simulation, expect: &Expect) -> f64 {
     rigid.map(|row| residual[row].abs() / system.row_scales()[row]).fold(0.0, f64::max)
 }
 
-/// A rise of the energy that counts, relative to the most that moves to and fro between its kinds. Rods are held to 1e-10 of
-/// their length, so that a projection may lift a weight by that much; ten times as much is more than that explains.
+/// A rise of the energy that counts, relative to the most that moves to and fro between its kinds. Rods are held to
+/// 1e-10 of their length, so that a projection may lift a weight by that much; ten times as much is more than that
+/// explains.
 const RISE: f64 = 1e-9;
 
 /// Where the watched coordinates were, frame by frame.

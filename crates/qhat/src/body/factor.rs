@@ -1,4 +1,4 @@
-//! G with G Gᵀ = S/m: Cholesky's method, the largest pivot first, so that it ends with the rank.
+//! G with G Gᵀ = S/m: Cholesky's method with the largest pivot first, so that it ends with the rank.
 
 use super::{BodyError, FLAT};
 
@@ -17,7 +17,7 @@ pub(super) fn factor(mut S: [[f64; 3]; 3]) -> Result<Vec<[f64; 3]>, BodyError> {
         }
         let largest = S[pivot][pivot];
         if largest <= FLAT * scale {
-            // What is left of a tensor that a body has is as small as its diagonal.
+            // The remainder of the tensor of a body is bounded by its diagonal.
             let rest = left.iter().flat_map(|&i| left.iter().map(move |&j| S[i][j].abs())).fold(0.0, f64::max);
             return match g.len() {
                 _ if rest > FLAT * scale => Err(BodyError::Inertia),

@@ -1,4 +1,4 @@
-//! Bodies: a rigid body as a few particles and the rods between them, which move as it does.
+//! Bodies: a rigid body as a few particles and the rods between them, which move as the body does.
 //!
 //! In Newton's and Euler's equations the matter of a rigid body appears in three sums only,
 //!
@@ -7,33 +7,35 @@
 //! inertia tensor I = tr(S) 1 − S,   in the plane the polar moment I = tr(S)
 //! ```
 //!
-//! so two rigid systems with the same three are *equimomental*: under the same resultant and moment they move alike
-//! (E. J. Routh, *Dynamics of a System of Rigid Bodies*, Elementary Part, chapter I). It takes few particles. Let m G Gᵀ = S
-//! with r independent columns g_k, and let s_0 … s_r be the corners of a simplex in r dimensions with Σ s_i = 0 and
-//! Σ s_i s_iᵀ = (r + 1) 1:
+//! so two rigid systems with the same three sums are *equimomental*: under the same resultant and moment they move
+//! alike (E. J. Routh, *Dynamics of a System of Rigid Bodies*, Elementary Part, chapter I). A few particles are
+//! enough. Let m G Gᵀ = S with r independent columns g_k, and let s_0 … s_r be the corners of a simplex in r
+//! dimensions with Σ s_i = 0 and Σ s_i s_iᵀ = (r + 1) 1:
 //!
 //! ```text
 //! r = 1:  −1, 1      r = 2:  √2 (cos 2πi/3, sin 2πi/3)      r = 3:  (1, 1, 1) (1, −1, −1) (−1, 1, −1) (−1, −1, 1)
 //! x_i = c + G s_i with m_i = m/(r + 1)   ⇒   Σ m_i (x_i − c)(x_i − c)ᵀ = m G Gᵀ = S
 //! ```
 //!
-//! The points are again the corners of a simplex. A rod along each of its edges holds it, and none repeats another: those that
-//! meet in a corner are linearly independent. A body that is flat in space has r = 2, one that is a line r = 1.
+//! The points are again the corners of a simplex. Rods along all its edges hold it, and no rod repeats another: the
+//! edges that meet in a corner are linearly independent. A body that is flat in space has r = 2, and a body in one line
+//! has r = 1.
 //!
-//! What is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so g_k = e_k/√12. A
-//! triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
+//! A body that is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so
+//! g_k = e_k/√12. A triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
 
 mod error;
 mod factor;
 
 pub use error::BodyError;
 
+use crate::number::cross;
 use crate::point::{add, dot, minus, norm, scaled};
 use crate::space::ParticleId;
 use factor::factor;
 
-/// What is thinner than this, relative to its extent squared, is taken as flat. The moments then change by as little, and a
-/// simplex as thin as that would have rods that double precision cannot tell apart.
+/// The relative size of an eigenvalue of S below which the body counts as flat in that direction. The moments change
+/// by as little, and a simplex as thin as that would have rods that double precision cannot tell apart.
 const FLAT: f64 = 1e-12;
 
 /// Particles and rods that move as a rigid body does. In two dimensions z is 0 and rotations are about z.
@@ -46,7 +48,9 @@ const FLAT: f64 = 1e-12;
 /// let mut builder = System::builder(Dimension::Three);
 /// let velocities = brick.velocities([1.0, 0.0, 0.0], [0.0, 0.0, 6.0]);
 /// let ids: Vec<_> = (0..4)
-///     .map(|i| Particle::at(format!("brick{i}"), brick.points[i]).with_mass(brick.masses[i]).with_velocity(velocities[i]))
+///     .map(|i| Particle::at(format!("brick{i}"), brick.points[i]).with_mass(brick.masses[i]))
+///     .zip(velocities)
+///     .map(|(particle, velocity)| particle.with_velocity(velocity))
 ///     .map(|particle| builder.particle(particle))
 ///     .collect();
 /// for (k, &[a, b]) in brick.rods.iter().enumerate() {
@@ -57,22 +61,23 @@ const FLAT: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// x_i, where its particles are [m].
+    /// x_i, the positions of the particles [m].
     pub points: Vec<[f64; 3]>,
-    /// m_i, their masses [kg], positive.
+    /// m_i, the masses of the particles [kg], positive.
     pub masses: Vec<f64>,
-    /// Which two of them each rod connects.
+    /// The two particles of each rod.
     pub rods: Vec<[usize; 2]>,
-    /// Which of them stays in the middle of which two: the one, and the two. Empty but for a bar in space.
+    /// A particle, and the two in whose middle it stays. Empty but for a bar in space.
     pub midpoints: Vec<[usize; 3]>,
 }
 
 impl Body {
-    /// What is uniform over the edges e_k [m] around a centre [m]: a thin bar (one edge), a plate (two) or a block (three),
-    /// not necessarily with right angles. Two particles, three or four; a bar in space has, as it should, no spin about itself.
+    /// A uniform body over the edges e_k [m] around a centre [m]: a thin bar (one edge), a plate (two) or a block
+    /// (three), not necessarily with right angles. It has two, three or four particles. A bar in space has no spin
+    /// about itself.
     ///
     /// # Errors
-    /// A mass [kg] that is not positive; numbers that are not finite; edges that do not span as many dimensions as they are.
+    /// A mass [kg] that is not positive; numbers that are not finite; edges that are linearly dependent.
     pub fn block(mass: f64, centre: [f64; 3], edges: &[[f64; 3]]) -> Result<Self, BodyError> {
         check(mass, edges.iter().chain([&centre]))?;
         if !(1..=3).contains(&edges.len()) {
@@ -85,12 +90,12 @@ impl Body {
             2 => norm(area(0, 1)),
             _ => dot(area(0, 1), unit[2]).abs(),
         };
-        // Not a number where an edge has no length, which is not above anything.
+        // NaN where an edge has no length; a comparison with NaN is false.
         let is_full = volume * volume > FLAT;
         if !is_full {
             return Err(BodyError::FlatEdges);
         }
-        // e/√12 is half the edge, drawn in by √3.
+        // g = e/√12 is half the edge over √3.
         let g: Vec<[f64; 3]> = edges.iter().map(|&edge| scaled(1.0 / 12.0_f64.sqrt(), edge)).collect();
         Body::simplex(mass, centre, &g)
     }
@@ -111,16 +116,16 @@ impl Body {
         Body::complete(vec![middle(a, b), middle(b, c), middle(c, a)], vec![mass / 3.0; 3])
     }
 
-    /// A body in space of which its mass [kg], centre [m] and inertia tensor about the centre [kg m²] are known.
+    /// A body in space of a given mass [kg], centre [m] and inertia tensor about the centre [kg m²].
     ///
     /// # Errors
-    /// A mass that is not positive; numbers that are not finite; a tensor that is not symmetric or that no body has: a
-    /// principal moment above the sum of the others, or all zero.
+    /// A mass that is not positive; numbers that are not finite; a tensor that is not symmetric, or that no body has (a
+    /// principal moment above the sum of the others, or all zero).
     pub fn from_inertia(mass: f64, centre: [f64; 3], inertia: [[f64; 3]; 3]) -> Result<Self, BodyError> {
         check(mass, inertia.iter().chain([&centre]))?;
         let trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
         let off = |i: usize, j: usize| (inertia[i][j] - inertia[j][i]).abs();
-        // Sums that came to the two entries in different order differ by rounding.
+        // The two entries may be sums in different order, which differ by roundoff.
         if [off(0, 1), off(0, 2), off(1, 2)].iter().any(|&off| off > 1e-12 * trace.abs()) {
             return Err(BodyError::NotSymmetric);
         }
@@ -129,7 +134,7 @@ impl Body {
         Body::simplex(mass, centre, &factor(S)?)
     }
 
-    /// A body in the plane of which its mass [kg], centre [m] and moment of inertia about the centre [kg m²] are known: three
+    /// A body in the plane of a given mass [kg], centre [m] and moment of inertia about the centre [kg m²]: three
     /// particles at the radius of gyration.
     ///
     /// # Errors
@@ -146,9 +151,9 @@ impl Body {
 
     /// A uniform thin bar in the plane with a particle at each end [m], so that it can be nailed there.
     ///
-    /// Three particles in its line (m/6, 4m/6, m/6) have its moments too, but rods in one line cannot hold them, only what
-    /// [`bar_in_space`](Self::bar_in_space) adds. Here the middle is two particles at ±w beside the line, and w and the
-    /// masses are such that the moment of inertia is right, which is all that the plane asks for:
+    /// Three particles in its line (m/6, 4m/6, m/6) have its moments, too, but rods in one line cannot hold them
+    /// without the constraint of [`bar_in_space`](Self::bar_in_space). Here the middle is two particles at ±w beside
+    /// the line. w and the masses make the moment of inertia right, which is enough in the plane:
     /// 2 · 11/72 · (L/2)² + 2 · 25/72 · (L/10)² = L²/12. Particles 0 and 1 are the ends.
     ///
     /// # Errors
@@ -169,11 +174,13 @@ impl Body {
         body.told_apart()
     }
 
-    /// A uniform thin bar in space with a particle at each end [m], so that it can be nailed there: m/6 at each end, 4m/6 in the middle.
+    /// A uniform thin bar in space with a particle at each end [m], so that it can be nailed there: m/6 at each end,
+    /// 4m/6 in the middle.
     ///
-    /// It has no moment about itself, so its particles lie in one line, and rods cannot hold those: the third repeats the others and leaves the
-    /// middle free to move sideways. Here one rod holds the ends, and the third particle [stays in the middle](crate::Relation::midpoint) of them:
-    /// 9 − 1 − 3 = 5 degrees of freedom. Particles 0 and 1 are the ends.
+    /// The bar has no moment about itself, so its particles lie in one line. Rods cannot hold them: a third rod
+    /// repeats the others and leaves the middle free to move sideways. Here one rod holds the ends, and the third
+    /// particle [stays in their middle](crate::Relation::midpoint): 9 − 1 − 3 = 5 degrees of freedom. Particles 0 and
+    /// 1 are the ends.
     ///
     /// # Errors
     /// A mass [kg] that is not positive; numbers that are not finite; ends at the same place.
@@ -198,7 +205,7 @@ impl Body {
         scaled(1.0 / self.masses.iter().sum::<f64>(), sum)
     }
 
-    /// v_i = v + ω × (x_i − c) [m/s], where c moves with v [m/s] and the body turns with ω [rad/s].
+    /// v_i = v + ω × (x_i − c) [m/s] for the velocity v of c [m/s] and the angular velocity ω [rad/s].
     pub fn velocities(&self, v: [f64; 3], omega: [f64; 3]) -> Vec<[f64; 3]> {
         let c = self.center();
         let turning = self.points.iter().map(|&x| cross(omega, minus(x, c)));
@@ -227,13 +234,13 @@ impl Body {
         Body::complete(corners.iter().map(place).collect(), vec![mass / corners.len() as f64; corners.len()])
     }
 
-    /// A rod between any two.
+    /// The body with a rod between any two particles.
     fn complete(points: Vec<[f64; 3]>, masses: Vec<f64>) -> Result<Self, BodyError> {
         let rods = (1..points.len()).flat_map(|b| (0..b).map(move |a| [a, b])).collect();
         Body { points, masses, rods, midpoints: Vec::new() }.told_apart()
     }
 
-    /// Itself, if its particles are still at different places after rounding.
+    /// The body itself, if its particles are at different places after rounding.
     fn told_apart(self) -> Result<Self, BodyError> {
         let lengths = (0..self.rods.len()).map(|rod| self.length(rod));
         if self.points.iter().flatten().all(|x| x.is_finite()) && lengths.into_iter().all(|length| length > 0.0) {
@@ -249,8 +256,4 @@ fn check<'a>(mass: f64, numbers: impl IntoIterator<Item = &'a [f64; 3]>) -> Resu
         return Err(BodyError::NotFinite);
     }
     if mass > 0.0 && mass.is_finite() { Ok(()) } else { Err(BodyError::Mass(mass)) }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -1,4 +1,4 @@
-//! How far chains are off their rods.
+//! Drift of chains: the length error of every rod and its rate.
 
 use super::solve::residual;
 use crate::drift::Drift;
@@ -6,7 +6,7 @@ use crate::linalg::eight::{F8, Wide, dot, load, minus};
 use crate::structure::chains::ChainPlan;
 use pulp::{Simd, WithSimd};
 
-/// What is left of C = 0 and Ċ = 0. Near C = 0, |d| − r = C/r and its rate is d·u/r.
+/// The residuals of C = 0 and Ċ = 0. Near C = 0, |d| − r = C/r and its rate is d·u/r.
 pub(super) struct Measure<'a, const D: usize> {
     pub(super) plan: &'a ChainPlan,
     pub(super) q: &'a [F8],

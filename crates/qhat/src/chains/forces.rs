@@ -1,5 +1,5 @@
-//! W Q in lanes [m/s²]. Forces are asked as everywhere else, in the user's order; those that do not change within a frame are
-//! asked once, and drag on every particle is a product in lanes.
+//! W Q in lanes [m/s²]. Forces are evaluated in the user's order. Forces that are constant over a frame are evaluated
+//! once in it, and drag on every particle is one product in lanes.
 
 use crate::force::{Acts, Dependence};
 use crate::linalg::eight::{F8, LANES, Wide, vector_unit};
@@ -11,16 +11,16 @@ use pulp::{Simd, WithSimd};
 /// The applied forces of one system over a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Forces {
-    /// W Q of forces that nothing changes within a frame.
+    /// W Q of the forces that are constant over a frame.
     constant: Vec<F8>,
-    /// W Q of all.
+    /// W Q of all forces.
     WQ: Vec<F8>,
     /// Viscous drag on every particle [N·s/m].
     drag: f64,
-    /// The forces that depend on where particles are: their numbers in the system, and the particles they name.
+    /// The forces that depend on the motion: their numbers in the system, and the particles they name.
     varying: Vec<usize>,
     named: Vec<(usize, Option<ChainSlot>)>,
-    /// q, q̇ and Q in the user's order; within a frame kept up to date for the named particles only.
+    /// q, q̇ and Q in the user's order; within a frame only the named particles are kept up to date.
     pub(super) q: Vec<f64>,
     pub(super) qd: Vec<f64>,
     Q: Vec<f64>,
@@ -42,7 +42,8 @@ impl Forces {
         }
     }
 
-    /// Asks the constant forces, and sorts the others. `q` and `qd` are those of the state.
+    /// Evaluates the forces that are constant over the frame once, and lists the particles that the other forces depend
+    /// on. `q` and `qd` are those of the state.
     pub(super) fn begin<const D: usize>(&mut self, system: &System, plan: &ChainPlan, t: f64) {
         self.drag = 0.0;
         self.varying.clear();
@@ -69,7 +70,7 @@ impl Forces {
         }
     }
 
-    /// W Q at a motion, and the power of what no potential accounts for [W].
+    /// Writes W Q at a motion and returns the power of the forces without a potential [W].
     pub(super) fn apply<const D: usize>(
         &mut self,
         system: &System,
@@ -109,12 +110,12 @@ impl Forces {
         for &(particle, home) in &self.named {
             let Some(place) = home else { continue };
             for c in 0..D {
-                // Taken away, because several forces may name the same particle.
+                // The entry is taken out, because several forces may name the same particle.
                 let force = std::mem::take(&mut self.Q[particle * D + c]);
                 self.WQ[place.block * D + c].0[place.lane] += plan.w[place.block].0[place.lane] * force;
             }
         }
-        // The head of a lane that follows is the last particle of the lane before.
+        // The first particle of a lane that continues another is the last particle of the lane before.
         for group in plan.groups.iter().filter(|group| group.is_coupled) {
             for c in 0..D {
                 let tail = self.WQ[(group.first + group.rows) * D + c].shifted_up();

@@ -1,8 +1,9 @@
-//! Open chains in eight lanes: the equation, the projection and the drift of a system that has nothing else.
+//! Chains: the equation, the projection and the drift of a system that consists of open chains, in eight lanes.
 //!
-//! Same mathematics as `multiplier`, other order of work: the rows are taken in the half squared form, assembled, factored and
-//! solved in two sweeps along the chains (`path.rs`), with particles stored in blocks of eight (`plan.rs`). A test holds its
-//! accelerations to those of the general path. Where a pivot is tiny the caller goes over to the general path.
+//! The mathematics is that of `multiplier`. The order of work differs: rows are taken in the half squared form, and are
+//! assembled, factored and solved in two sweeps along the chains (`path.rs`), with particles stored in blocks of eight
+//! (`structure/chains.rs`). A test compares its accelerations with those of the general path. If a pivot is tiny, the
+//! caller continues on the general path.
 
 mod drift;
 mod forces;
@@ -22,7 +23,7 @@ use path::Eliminated;
 use solve::{Acceleration, Position, Solve, Velocity};
 use std::ops::Range;
 
-/// Newton's method with a factor of its own each time: from the error of one substep it takes one or two iterations.
+/// Most iterations of a projection. Newton's method with a new factor each time needs one or two after a substep.
 const MAX_ITERATIONS: usize = 8;
 
 /// Outcome of a projection.
@@ -36,7 +37,7 @@ pub(crate) enum Projected {
     Singular,
 }
 
-/// Arrays of one system in lanes.
+/// Arrays of one system of open chains.
 #[derive(Clone, Debug)]
 pub(crate) struct Chains {
     forces: Forces,
@@ -53,7 +54,7 @@ impl Chains {
         }
     }
 
-    /// Lays the state into lanes, nailed particles at their nails, and asks the constant forces.
+    /// Copies the state into lanes, puts nailed particles at their nails, and evaluates the constant forces.
     pub(crate) fn begin<const D: usize>(
         &mut self,
         system: &System,
@@ -75,7 +76,7 @@ impl Chains {
         self.forces.begin::<D>(system, plan, state.t);
     }
 
-    /// Writes a motion in lanes back to the user's order.
+    /// Copies a motion from lanes to the user's order.
     pub(crate) fn end<const D: usize>(&self, plan: &ChainPlan, q: &[F8], qd: &[F8], state: &mut State) {
         for place in &plan.homes {
             for c in 0..D {
@@ -86,7 +87,7 @@ impl Chains {
         hold_nailed::<D>(plan, &mut state.q, &mut state.qd);
     }
 
-    /// Writes q̈ at a motion, and returns the power of the forces without a potential [W]; `None` where rows depend on each
+    /// Writes q̈ at a motion and returns the power of the forces without a potential [W]. `None` if rows depend on each
     /// other.
     pub(crate) fn accelerate<const D: usize>(
         &mut self,
@@ -103,7 +104,7 @@ impl Chains {
         is_regular.then_some(power)
     }
 
-    /// Brings q onto C = 0, then q̇ onto Ċ = 0. `attainable` is the |C| relative to r at which to stop.
+    /// Projects q onto C = 0, then q̇ onto Ċ = 0. The iteration stops at |C| ≤ `attainable` · r.
     pub(crate) fn project<const D: usize>(
         &mut self,
         plan: &ChainPlan,
@@ -134,7 +135,7 @@ impl Chains {
         Projected::NotMet
     }
 
-    /// What is left of C = 0 and Ċ = 0.
+    /// The residuals of C = 0 and Ċ = 0.
     pub(crate) fn drift<const D: usize>(&self, plan: &ChainPlan, q: &[F8], qd: &[F8]) -> Drift {
         vector_unit().dispatch(Measure::<D> { plan, q, qd })
     }

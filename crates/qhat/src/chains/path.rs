@@ -9,33 +9,35 @@
 //! λ_i = (y_i − e_{i+1} λ_{i+1})/D_i,   W Jᵀλ at i = w_i (λ_i d_i − λ_{i+1} d_{i+1})   backward
 //! ```
 //!
-//! A quotient takes longer than all the rest of a row, and each pivot would wait for the one before. So the pivots are
-//! quotients of p_i = A_ii p_{i−1} − e_i² p_{i−2}, D_i = p_i/p_{i−1}, and p alone goes from row to row.
+//! A division takes longer than all other operations of a row, and D_i would wait for the division of D_{i−1}. Written
+//! as D_i = p_i/p_{i−1} with p_i = A_ii p_{i−1} − e_i² p_{i−2}, the recurrence multiplies and subtracts only: the p
+//! follow from row to row, and the divisions no longer wait for each other.
 //!
-//! Chains that hold consecutive stretches of one long chain are coupled: row 1 of a lane meets the last row of the lane before,
-//! whose multiplier is z. Carried along as a second right side, f_1 = e_1 and f_i = −e_i f_{i−1}/D_{i−1}, it leaves a system of one
-//! unknown a lane, tridiagonal again (elimination by partition):
+//! Eight lanes may hold consecutive stretches of one long chain. Row 1 of a lane is then coupled with the last row of
+//! the lane before, whose multiplier z is not known yet. Its coefficients are carried along as a second right-hand
+//! side, f_1 = e_1 and f_i = −e_i f_{i−1}/D_{i−1}. A system with one unknown for each lane remains, tridiagonal again
+//! (elimination by partition):
 //!
 //! ```text
-//! (D_S − Σ' f²/D) z_lane + f_S z_before + f'_S z_after = y_S − Σ' f y/D      ' : of the lane after, its rows below S
+//! (D_S − Σ' f²/D) z_lane + f_S z_before + f'_S z_after = y_S − Σ' f y/D      ' : rows below S of the lane after
 //! λ_i = (y_i − f_i z − e_{i+1} λ_{i+1})/D_i
 //! ```
 //!
-//! Source: Baraff, Linear-Time Dynamics using Lagrange SolveFor (1996), for the elimination; Wang, A parallel method for
-//! tridiagonal equations, ACM TOMS 7 (1981), for the partition.
+//! Source: Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), for the elimination; Wang, A parallel method
+//! for tridiagonal equations, ACM TOMS 7 (1981), for the partition.
 
 use crate::linalg::eight::{F8, LANES, Wide, dot, load, minus};
 use crate::structure::chains::{Group, Stretch};
 use pulp::Simd;
 
-/// A pivot below this part of its diagonal is taken for zero, as in `multiplier/factor.rs`: rows depend on each other.
+/// A pivot below this part of its diagonal counts as zero, as in `multiplier/factor.rs`: the rows depend on each other.
 const TINY_PIVOT: f64 = 1e-12;
 
-/// After so many rows the product p of all pivots starts again from one, before it can leave the range of numbers, and what
-/// has decayed to nothing is set to zero.
+/// Rows after which the product p of all pivots starts again from one, before p can overflow or underflow. Numbers that
+/// have decayed below `NEGLIGIBLE` are set to zero at the same row.
 const RESTART: usize = 4;
 
-/// What the forward sweep leaves of one row.
+/// One row after the forward sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Eliminated {
     /// e_i.
@@ -48,17 +50,17 @@ pub(super) struct Eliminated {
     f: F8,
 }
 
-/// What A λ is to be, and what W Jᵀλ is added to. Blocks are counted from the group's first.
+/// The right-hand side of A λ = b and the vector to which W Jᵀλ is added. Blocks count from the group's first.
 pub(super) trait RightSide<const D: usize> {
     /// b of row i.
     fn row<S: Simd>(&self, simd: S, i: usize, d: [Wide<S>; D]) -> Wide<S>;
 
-    /// What the particle in block i has without any constraint.
+    /// The value of block i without any constraint.
     fn free<S: Simd>(&self, simd: S, i: usize) -> [Wide<S>; D];
 }
 
-/// Writes free + W Jᵀλ with A λ = b into `out`. All slices begin at the group's first block. False where a pivot is tiny or not
-/// a number: the rows depend on each other and `out` is of no use.
+/// Writes free + W Jᵀλ with A λ = b into `out`. All slices begin at the group's first block. Returns false if a pivot
+/// is tiny or NaN: the rows depend on each other, and `out` must not be used.
 #[inline(always)]
 pub(super) fn solve<S: Simd, const D: usize>(
     simd: S,
@@ -126,7 +128,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
         let ratio = e * inverse;
         y = right.row(simd, i, d) - ratio * y;
         if COUPLED {
-            // In row 1 the multiplier of the lane before is not known yet: its part of the row is f.
+            // The multiplier of the lane before is not known in row 1; its coefficient is f.
             f = if i == 1 { follows * e } else { -(ratio * f) };
         }
         inverse = p / p_here;
@@ -193,14 +195,14 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
             let from_after = at(&(follows * pull[c]).stored().shifted_down());
             let tail = (at(&out[last * D + c]) - at(&w[last]) * from_after).flushed().stored();
             out[last * D + c] = tail;
-            // The head of a lane that follows is the last particle of the lane before.
+            // The first particle of a lane that continues another is the last particle of the lane before.
             at(&tail.shifted_up()).where_above(follows, zero, own).store(&mut out[c]);
         }
     }
     is_regular && regular.stored().0.iter().all(|&lane| lane > 0.0)
 }
 
-/// What the last row of every lane has come to.
+/// The last row of every lane after the forward sweep.
 struct Tails {
     y: F8,
     inverse: F8,

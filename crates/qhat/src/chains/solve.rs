@@ -1,7 +1,7 @@
-//! λ of every chain, with the right sides that are asked for: accelerations, velocities, positions.
+//! λ of every chain for three right-hand sides: accelerations, velocities and positions.
 //!
-//! Groups know nothing of each other, so where they are many they go to several threads; what each computes is the same on any
-//! number of threads.
+//! Groups are independent, so many groups are distributed over several threads. Each group computes the same numbers on
+//! any number of threads.
 
 use super::path::{Eliminated, RightSide, solve};
 use crate::linalg::eight::{F8, Wide, dot, load, minus, vector_unit};
@@ -10,10 +10,10 @@ use crate::threads;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// Work for one thread [blocks]: some 20 µs, a hundred times what handing it over costs.
+/// Work for one thread [blocks]: about 20 µs, a hundred times the cost of handing it to a thread.
 const SHARE: usize = 512;
 
-/// `solve` for a row of groups. `right` makes the right side of a group from its stretch and its places in arrays.
+/// `solve` for consecutive groups. `right` makes the right-hand side of a group from its stretch and its ranges.
 pub(super) struct Solve<'a, B, const D: usize> {
     pub(super) plan: &'a ChainPlan,
     pub(super) groups: &'a [Group],
@@ -21,7 +21,7 @@ pub(super) struct Solve<'a, B, const D: usize> {
     pub(super) right: &'a B,
     /// Room for the rows of the largest group.
     pub(super) rows: &'a mut [Eliminated],
-    /// Of these groups alone.
+    /// Solves these groups one after the other.
     pub(super) out: &'a mut [F8],
 }
 
@@ -54,7 +54,7 @@ impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R, const D: usize>
         for stretch in self.plan.stretches(self.groups) {
             let (blocks, at) = (stretch.group.rows + 1, stretch.group.coordinates::<D>());
             let right = (self.right)(stretch, at.clone());
-            // The same rows for each group: they are of no use afterwards, and stay near.
+            // Every group overwrites the same rows, which therefore stay in the cache.
             is_regular &= solve(simd, stretch, &self.q[at], &right, self.rows, out);
             out = &mut out[blocks * D..];
         }

@@ -18,8 +18,8 @@ impl Numbers {
     }
 }
 
-/// Chains of so many links on random walks, moving; every third held by its first particle, every fourth nailed by its last.
-/// All kinds of forces act.
+/// Chains of so many links on random walks, moving; every third held by its first particle, every fourth nailed by its
+/// last. All kinds of forces act.
 fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
     let numbers = &mut Numbers(7);
     let d = dimension.number();

@@ -1,4 +1,4 @@
-//! Anchor: what a constraint measures from, a point that may be driven or a particle.
+//! Anchor: the point that a constraint measures from, fixed, driven or a particle.
 
 use super::error::ConstraintError;
 use crate::allowed::ValueError;
@@ -6,7 +6,7 @@ use crate::driven::Driven;
 use crate::number::Number;
 use crate::space::ParticleId;
 
-/// A point or vector whose components may follow t; the third is ignored in two dimensions.
+/// A point or vector whose components may be driven; the third is ignored in two dimensions.
 pub type DrivenPoint = [Driven; 3];
 
 /// A point, fixed or driven, or a particle.
@@ -14,7 +14,7 @@ pub type DrivenPoint = [Driven; 3];
 pub enum Anchor {
     /// p(t) [m].
     Point(DrivenPoint),
-    /// Where a particle is.
+    /// The position of a particle.
     Particle(ParticleId),
 }
 
@@ -35,7 +35,7 @@ impl Anchor {
         if let Anchor::Particle(particle) = self { Some(*particle) } else { None }
     }
 
-    /// p and, of a point, ṗ; of a particle, `x`.
+    /// p and ṗ. A particle is at `x`, and its velocity is no part of C_t: ṗ is zero.
     pub(super) fn at<N: Number, const D: usize>(&self, x: impl FnOnce() -> [N; D], t: N) -> ([N; D], [N; D]) {
         match self {
             Anchor::Point(point) => follow(point, t),
@@ -48,7 +48,7 @@ impl Anchor {
     }
 }
 
-/// A point that stays.
+/// A fixed point.
 pub(super) fn still(point: [f64; 3]) -> DrivenPoint {
     point.map(Driven::Constant)
 }
@@ -63,7 +63,7 @@ pub(super) fn check_point(point: &DrivenPoint, what: &'static str) -> Result<(),
     point.iter().try_for_each(|component| Ok(component.check(what)?))
 }
 
-/// `Ok` if a vector gives a direction at the start in d dimensions.
+/// `Ok` if a vector has a direction at t = 0 in d dimensions.
 pub(super) fn check_direction(
     vector: &DrivenPoint,
     what: &'static str,

@@ -1,4 +1,4 @@
-//! Angle: an arm stands at an angle to another arm, or to a fixed direction; the angle may follow a schedule α(t): a motor.
+//! Angle: the angle from one arm, or from a fixed direction, to another arm. It may follow α(t): a motor.
 //!
 //! ```text
 //! u, w   the two arms, or u a fixed direction
@@ -9,16 +9,17 @@
 //! C_t = −α̇
 //! ```
 //!
-//! λ turns the second arm by +λ and the first by −λ; what a fixed direction takes goes to the ground, and nothing is pushed in sum.
-//! A motor gives the power λ α̇. α may run on over any number of turns in the plane: an arm that stands where it should is at C = 0 however
-//! often it went round, and no count is kept.
+//! The torque turns the second arm by +λ and the first arm by −λ, and the sum of all forces is zero. With a fixed
+//! direction the ground takes the torque −λ. A motor gives the power λ α̇. In the plane α may run over any number of
+//! turns: C counts no turns, so an arm at the right place has C = 0 however often it went round.
 //!
-//! Fails where an arm has no length. In the plane C jumps where the arm is wrong by half a turn. In space φ has no derivative at 0 and π, where
-//! two arms in line are two conditions and not one: keep α inside. The numbers are then undefined, and a step says so.
+//! Fails where an arm has no length. In the plane C jumps where the arm is wrong by half a turn. In space φ has no
+//! derivative at 0 and π, where two arms in line are two conditions and not one, so α must stay inside. At a failure
+//! the numbers are undefined, and the step ends in an error.
 
 use super::arms::Arms;
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::all_finite;
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, norm, raised, scaled};
@@ -28,9 +29,9 @@ use std::f64::consts::TAU;
 /// The angle from one arm to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Angle {
-    /// The first arm, if it is one, and the second.
+    /// The first arm, unless it is a direction, and the second.
     arms: Arms,
-    /// The first, if it stays.
+    /// u, if it is a direction.
     direction: [f64; 3],
     angle: Driven,
 }
@@ -41,17 +42,18 @@ impl Angle {
         Angle { arms: Arms::new([from, to]), direction: [0.0; 3], angle: angle.into() }
     }
 
-    /// The angle α [rad] from a direction of any length to the arm `to`; its third component is ignored in two dimensions.
+    /// The angle α [rad] from a direction of any length to the arm `to`. The third component of the direction is
+    /// ignored in two dimensions.
     pub fn from_direction(direction: [f64; 3], to: [ParticleId; 2], angle: impl Into<Driven>) -> Self {
         Angle { arms: Arms::new([to]), direction, angle: angle.into() }
     }
 
-    /// The arm from which it is counted, `None` where that is a direction, and the arm to which.
+    /// The first arm, `None` where the angle counts from a direction, and the second arm.
     pub fn arms(&self) -> (Option<[ParticleId; 2]>, [ParticleId; 2]) {
         if self.has_direction() { (None, self.arms.ends(0)) } else { (Some(self.arms.ends(0)), self.arms.ends(1)) }
     }
 
-    /// The direction from which it is counted; zero where that is an arm.
+    /// The direction that the angle counts from; zero where it counts from an arm.
     pub fn direction(&self) -> [f64; 3] {
         self.direction
     }
@@ -62,24 +64,14 @@ impl Angle {
 }
 
 impl Smooth for Angle {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.arms.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         let (u, w): ([N; D], [N; D]) = match self.has_direction() {
-            true => (std::array::from_fn(|k| N::constant(self.direction[k])), self.arms.vector(0, x)),
-            false => (self.arms.vector(0, x), self.arms.vector(1, x)),
+            true => (std::array::from_fn(|k| N::constant(self.direction[k])), self.arms.vector(0, at)),
+            false => (self.arms.vector(0, at), self.arms.vector(1, at)),
         };
         let across = cross(raised(u), raised(w));
         let [zero, one] = [0.0, 1.0].map(N::constant);
@@ -89,7 +81,7 @@ impl Smooth for Angle {
             let sine = norm(across);
             (sine, across.map(|component| component / sine))
         };
-        let (angle, rate) = self.angle.at(t);
+        let (angle, rate) = self.angle.at(at.t);
         let C = within_half_a_turn(N::atan2(sine, dot(u, w)) - angle);
         let turned = |arm: [N; D], sign: f64| -> [N; D] {
             let turned = cross(n, raised(arm));
@@ -97,7 +89,7 @@ impl Smooth for Angle {
         };
         let is_last = |arm: usize| arm + 1 == self.arms.count();
         self.arms.spread(|arm| if is_last(arm) { turned(w, 1.0) } else { turned(u, -1.0) }, gradient);
-        (C, -rate)
+        Residual { C, C_t: -rate }
     }
 
     fn scale(&self, _: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Area: a polygon keeps its area, or one that follows a schedule A(t). What is inside is incompressible. In the plane.
+//! Area: a polygon keeps its area A(t), which may be driven. The content is incompressible. In the plane.
 //!
 //! ```text
 //! C = ½ Σ (x_i − x_0) × (x_{i+1} − x_0) − A(t)       [m²],  λ: the pressure inside [N/m]
@@ -6,11 +6,12 @@
 //! C_t = −Ȧ
 //! ```
 //!
-//! Positive where the corners run counterclockwise. Places count from x_0, so that a polygon far from the origin keeps its digits.
-//! Fails where all corners fall into one place: the gradient vanishes. Sides may cross; the sum then counts loops with their sign.
+//! A is positive where the corners run counterclockwise. Positions count from x_0, so that a polygon far from the
+//! origin keeps its digits. Sides may cross; the sum then counts each loop with its sign. Fails where all corners
+//! fall into one place, because the gradient vanishes there.
 
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, minus};
 use crate::space::ParticleId;
@@ -18,44 +19,32 @@ use crate::space::ParticleId;
 /// A polygon that keeps its area, in the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
-    /// Its corners in order, three or more, each particle once.
+    /// The corners in order, three or more, each particle once.
     pub corners: Vec<ParticleId>,
     /// A [m²], positive where the corners run counterclockwise.
     pub area: Driven,
 }
 
 impl Smooth for Area {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
-    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
-        super::error::only_in(2, dimension)
-    }
+    const ONLY_IN: Option<usize> = Some(2);
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.corners.get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         let count = self.corners.len();
-        let (area, rate) = self.area.at(t);
-        let origin = x(0);
+        let (area, rate) = self.area.at(at.t);
+        let origin = at.x(0);
         let mut twice = N::constant(0.0);
         for i in 0..count {
-            let (before, after) = (x((i + count - 1) % count), x((i + 1) % count));
-            let (a, b) = (minus(x(i), origin), minus(after, origin));
+            let (before, after) = (at.x((i + count - 1) % count), at.x((i + 1) % count));
+            let (a, b) = (minus(at.x(i), origin), minus(after, origin));
             twice = twice + (a[0] * b[1] - a[1] * b[0]);
             let across = minus(after, before);
-            gradient(std::array::from_fn(|k| if k == 0 { across[1].times(0.5) } else { across[0].times(-0.5) }));
+            gradient.push(std::array::from_fn(|k| if k == 0 { across[1].times(0.5) } else { across[0].times(-0.5) }));
         }
-        (twice.times(0.5) - area, -rate)
+        Residual { C: twice.times(0.5) - area, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -1,19 +1,20 @@
-//! Arms: vectors from one particle to another, of which several kinds are functions. What turns ∂C/∂d of each arm into the gradient of
-//! C, wherever the same particle ends several of them.
+//! Arms: vectors d from one particle to another, of which several kinds are functions. Arms turn ∂C/∂d into the
+//! gradient of C, wherever one particle ends several arms.
 //!
 //! ```text
 //! d = x_b − x_a,   ∂C/∂x_i = Σ (∂C/∂d of the arms that end at i) − Σ (∂C/∂d of those that begin there)
 //! ```
 
+use super::smooth::{At, Gradient};
 use crate::number::{Number, minus, plus};
 use crate::space::ParticleId;
 
-/// Which particles the arms of a constraint go between.
+/// The particles between which the arms of a constraint go.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arms {
     /// Each once.
     particles: Vec<ParticleId>,
-    /// Where each arm begins and ends, counting `particles`.
+    /// Where each arm begins and ends, as places in `particles`.
     ends: Vec<[usize; 2]>,
 }
 
@@ -50,16 +51,16 @@ impl Arms {
     }
 
     /// d of one arm.
-    pub(super) fn vector<N: Number, const D: usize>(&self, arm: usize, x: &impl Fn(usize) -> [N; D]) -> [N; D] {
+    pub(super) fn vector<N: Number, const D: usize>(&self, arm: usize, at: &At<N, D>) -> [N; D] {
         let [a, b] = self.ends[arm];
-        minus(x(b), x(a))
+        minus(at.x(b), at.x(a))
     }
 
-    /// Hands ∂C/∂x to `gradient`, particle after particle, from ∂C/∂d of each arm.
+    /// Hands ∂C/∂x to `gradient`, particle after particle, given ∂C/∂d of each arm.
     pub(super) fn spread<N: Number, const D: usize>(
         &self,
         of_arm: impl Fn(usize) -> [N; D],
-        gradient: &mut impl FnMut([N; D]),
+        gradient: &mut Gradient<N, D>,
     ) {
         for i in 0..self.particles.len() {
             let mut sum = [N::constant(0.0); D];
@@ -70,7 +71,7 @@ impl Arms {
                     sum = minus(sum, of_arm(arm));
                 }
             }
-            gradient(sum);
+            gradient.push(sum);
         }
     }
 }

@@ -1,17 +1,18 @@
-//! A smooth curve c(s), and the foot of a point on it: the parameter s* where it is nearest.
+//! Curve: a smooth curve c(s), and the foot of a point on it, the parameter s* of the nearest point.
 //!
 //! ```text
 //! w = x − c(s),   g(s) = w·c' = 0,   −g' = c'·c' − w·c"
 //! ∂s*/∂x = c'/(c'·c' − w·c")
 //! ```
 //!
-//! s* is looked for from the nearest of 512 points of the curve, by Newton's method that is kept between the neighbours of that point:
-//! it depends on x alone, never on what was asked before, so a run gives the same bits wherever it starts from. Near a place where the
-//! curve comes close to itself or crosses itself the nearest branch is taken, and x cannot say which one it came along: a curve
-//! must keep off itself. A polyline has its foot in closed form (polyline.rs).
+//! The search for s* begins at the nearest of 512 points of the curve. Newton's method follows, kept between the
+//! neighbours of that point. The result depends on x alone and not on earlier calls, so a run gives the same bits
+//! wherever it starts. Near a place where the curve comes close to itself or crosses itself the nearest branch is
+//! taken. x cannot say on which branch the particle came, so a curve must keep off itself. A polyline has its foot in
+//! closed form (polyline.rs).
 //!
-//! Beyond 9/10 of the radius of curvature on the inner side −g' is held at c'·c'/10: there the foot is about to jump, and its derivative
-//! would be infinite. Where c' = 0, a cusp, the tangent is that of c" and the foot does not move.
+//! Beyond 9/10 of the radius of curvature on the inner side −g' is held at c'·c'/10: the foot is about to jump there,
+//! and its derivative would be infinite. Where c' = 0, a cusp, the tangent is that of c", and the foot does not move.
 
 use super::polyline::Polyline;
 use super::spline::Spline;
@@ -21,11 +22,13 @@ use crate::number::Number;
 use crate::point::{Point, dot, minus};
 use std::sync::Arc;
 
+/// Pieces of equal parameter, from whose nearest end the search for a foot begins.
 const SAMPLES: usize = 512;
-/// Newton's method takes about five; halving of intervals, which it falls back to, fifty.
+/// Bound on the iterations for one foot. Newton's method takes about five, the bisection that it falls back to about
+/// fifty.
 const ITERATIONS: usize = 60;
 
-/// A smooth curve. Cloning shares it.
+/// A smooth curve, for beads and wires. Clones share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     shape: Arc<Shape>,
@@ -46,7 +49,7 @@ enum CurveForm {
     Polyline(Polyline),
 }
 
-/// Where the foot of a point is.
+/// The foot of a point, and what moves with it.
 pub(super) struct Foot<N, const D: usize> {
     /// x − c.
     pub(super) w: [N; D],
@@ -57,11 +60,12 @@ pub(super) struct Foot<N, const D: usize> {
 }
 
 impl Curve {
-    /// x(s), y(s) and in space z(s) [m] for s from one number to another: expressions for [`Purpose::Curve`](crate::Purpose::Curve).
-    /// Beyond its ends the curve goes on as they do.
+    /// The curve x(s), y(s) and in space z(s) [m] for s between two numbers: expressions for
+    /// [`Purpose::Curve`](crate::Purpose::Curve). Beyond its ends the curve follows the same expressions.
     ///
     /// # Errors
-    /// Not two or three of them, one that depends on more than s, bounds in the wrong order, and where the curve is not finite.
+    /// A number of components other than two or three; a component that depends on more than s; bounds in the wrong
+    /// order; a curve that is not finite.
     pub fn parametric(components: Vec<Expression>, from: f64, to: f64) -> Result<Self, GeometryError> {
         if !(2..=3).contains(&components.len()) {
             return Err(GeometryError::CurveComponents { count: components.len() });
@@ -75,22 +79,23 @@ impl Curve {
         Curve::new(CurveForm::Expressions(components), from, to)
     }
 
-    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. Beyond the ends of an open one it goes on straight.
+    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. An open spline goes on straight
+    /// beyond its ends.
     ///
     /// # Errors
-    /// Fewer than two points, or three of a closed one; two neighbours at one place; a number that is not finite.
+    /// Fewer than two points, or three of a closed spline; two neighbours at one place; a number that is not finite.
     pub fn through(points: &[[f64; 3]], closed: bool) -> Result<Self, GeometryError> {
         let spline = Spline::new(points, closed)?;
         let end = spline.end();
         Curve::new(CurveForm::Spline(spline), 0.0, end)
     }
 
-    /// Straight from point to point [m], closed or open, with corners that are arcs of a radius [m]; z = 0 in two dimensions. Its parameter is
-    /// its arc length [m]. Beyond the ends of an open one it goes on straight.
+    /// Straight pieces from point to point [m], closed or open, with arcs of a radius [m] at the corners; z = 0 in two
+    /// dimensions. The parameter is the arc length [m]. An open polyline goes on straight beyond its ends.
     ///
     /// # Errors
-    /// Fewer than two points, or three of a closed one; two neighbours at one place; a corner that folds back by 180°; a radius that is too
-    /// large for the straight pieces beside a corner, with the largest that fits.
+    /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
+    /// 180°; a radius that is too large for the straight pieces beside a corner, with the largest that fits.
     pub fn polyline(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, GeometryError> {
         let polyline = Polyline::new(points, radius, closed)?;
         let to = polyline.end();
@@ -106,7 +111,7 @@ impl Curve {
         Ok(Curve { shape: Arc::new(shape) })
     }
 
-    /// `Ok` if it can be in d dimensions.
+    /// `Ok` if the curve has a meaning in d dimensions.
     pub(super) fn fits(&self, dimension: usize) -> Result<(), GeometryError> {
         match &self.shape.form {
             CurveForm::Expressions(components) if components.len() != dimension => {
@@ -116,7 +121,7 @@ impl Curve {
         }
     }
 
-    /// Where its parameter begins and ends.
+    /// The first and last parameter of the curve.
     pub fn range(&self) -> [f64; 2] {
         [self.shape.from, self.shape.to]
     }
@@ -126,7 +131,8 @@ impl Curve {
         self.shape.at::<3>(s).map(|[c, _, _]| c)
     }
 
-    /// Points of a polygon that looks like it [m], from end to end: in so many pieces, or a polyline's straight pieces and its arcs in pieces of 5°.
+    /// The corners of a polygon that looks like the curve [m], from end to end, for drawing: so many pieces of equal
+    /// parameter, or of a polyline its straight pieces and its arcs in pieces of 5°.
     pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {
         let Shape { form, from, to, .. } = &*self.shape;
         match form {
@@ -195,7 +201,7 @@ impl Shape {
         let span = self.to - self.from;
         let step = span / SAMPLES as f64;
         let mut s = self.parameter(nearest.0);
-        // Beyond an end the foot may be anywhere.
+        // Beyond an end the foot may lie at any distance.
         let mut low = if nearest.0 == 0 { f64::NEG_INFINITY } else { s - step };
         let mut high = if nearest.0 == SAMPLES { f64::INFINITY } else { s + step };
         for _ in 0..ITERATIONS {
@@ -216,7 +222,7 @@ impl Shape {
             let newton = if steepness > 0.0 { s + g / steepness } else { s + step.copysign(g) };
             let inside = (s.min(bound)..=s.max(bound)).contains(&newton);
             let next = if inside { newton } else { 0.5 * (s + bound) };
-            // Newton's method squares its error: what is left of 1e-8 is roundoff. A number that is none ends it, too.
+            // Newton's method squares its error: after a step of 1e-8 only roundoff is left. NaN ends the search, too.
             let done = next.is_nan() || (next - s).abs() <= 1e-8 * span;
             s = next;
             if done {

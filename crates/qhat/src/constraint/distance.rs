@@ -24,13 +24,14 @@
 //! ∂²C/∂x² = 2 I on aa and bb, −2 I on ab
 //! ```
 //!
-//! A rod of compliance α [m/N] and damping c [N·s/m] gives way: C + α λ + α c Ċ = 0 in the length form, so that at rest it is
-//! longer by α T. α = 0 is rigid. Methods that solve at the end of the step solve this row with the others; for all others it is
-//! what it is physically, a spring of stiffness 1/α with a damper c beside it, and takes no part in A. λ and tension mean
-//! the same in both.
+//! A rod of compliance α [m/N] and damping c [N·s/m] is soft: C + α λ + α c Ċ = 0 in the length form, so that at rest
+//! it is longer by α T. α = 0 is rigid. Methods that solve at the end of the step solve this row with the others. For
+//! all other methods the soft rod is a spring of stiffness 1/α with a damper c beside it, and A has no active row for
+//! it. λ and tension mean the same in both.
 //!
-//! Fails at |d| = 0: the length form has no direction there and takes the first axis with γ = 0 (any unit vector is
-//! a subgradient of |d| at 0), so that a projection can still pull the ends apart; the squared form's J vanishes.
+//! Fails at |d| = 0. The length form has no direction there and takes the first axis with γ = 0 (any unit vector is a
+//! subgradient of |d| at 0), so that a projection can still pull the ends apart. The J of the squared form vanishes.
+//!
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
 use super::{ConstraintError, Formulation, Holds, OnSphere, RowWriter, Softness};
@@ -67,7 +68,7 @@ pub struct Distance {
     pub compliance: f64,
     /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has no motion to damp.
     pub damping: f64,
-    /// The tension or thrust that it does not survive [N].
+    /// The tension or thrust at which the rod breaks [N].
     pub breaks_at: Option<f64>,
 }
 
@@ -77,8 +78,8 @@ impl Distance {
         Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
     }
 
-    /// A rod whose length is driven [m]: an [`OnSphere`] about the particle `b`, which has the length as a number or a
-    /// function of t. It is no link, so it has no tension of its own; its reaction is minus the tension.
+    /// A rod whose length is driven [m], a number or a function of t: an [`OnSphere`] about the particle `b`. It is no
+    /// link; its tension is minus its reaction.
     ///
     /// ```
     /// use qhat::{Dimension, Distance, Driven, Particle, System};
@@ -91,12 +92,12 @@ impl Distance {
         OnSphere::new(a, b, length)
     }
 
-    /// The same with the tension or thrust that it does not survive [N].
+    /// The same rod, with the tension or thrust at which it breaks [N].
     pub fn breaking_at(self, tension: f64) -> Self {
         Distance { breaks_at: Some(tension), ..self }
     }
 
-    /// The same with a compliance [m/N] and a damping [N·s/m].
+    /// The same rod with a compliance [m/N] and a damping [N·s/m].
     pub fn with_compliance(self, compliance: f64, damping: f64) -> Self {
         Distance { compliance, damping, ..self }
     }
@@ -200,7 +201,7 @@ impl Holds for Distance {
     fn formulated(&self, formulation: Formulation) -> Self {
         let form = match formulation {
             Formulation::Modern => DistanceForm::Length,
-            // A rod that gives way is a spring, in every formulation.
+            // A soft rod is a spring in every formulation.
             Formulation::Classic if self.compliance > 0.0 => DistanceForm::Length,
             Formulation::Classic => DistanceForm::Squared,
         };

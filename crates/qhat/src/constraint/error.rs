@@ -167,6 +167,15 @@ pub enum ConstraintError {
     /// A side of the surface has a face on one side only.
     #[error("the surface is not closed: each side needs a face on either side of it")]
     NotClosed,
+    /// A custom constraint names no particle.
+    #[error("a custom constraint names no particle, so that nothing could hold it at zero")]
+    CustomWithoutParticles,
+    /// The scale of a custom constraint is not above zero.
+    #[error("the scale of a custom constraint must be above 0 and finite, but is {scale}")]
+    CustomScale {
+        /// The scale [C].
+        scale: f64,
+    },
     /// The residual depends on velocities.
     #[error("a constraint may depend on positions and time only, not on velocities")]
     DependsOnVelocities,

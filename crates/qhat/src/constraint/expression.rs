@@ -1,23 +1,23 @@
-//! Expression: C(q, t) = 0 as written by a user; one row, [C] is what the text makes of it.
+//! ExpressionConstraint: C(q, t) = 0 as text of a user; one row. [C] is the unit that the text gives it.
 //!
 //! ```text
 //! C, Ċ = J q̇ + C_t, γ = (∂(Jq̇)/∂q) q̇ + 2 J_t q̇ + C_tt, J and C_t     in two passes over the expression
-//! ∂²C/∂q²     in one for each coordinate; −λ ∂²C/∂q² has no sign that is known
+//! ∂²C/∂q²     in one pass for each coordinate; −λ ∂²C/∂q² has no known sign
 //! ```
 //!
-//! Several residuals are several constraints: each row then touches its own particles only and has a scale of its own.
+//! Several residuals are several constraints: each row then names its own particles only and has a scale of its own.
 //!
-//! Scale: by how much C changes, to second order, where one particle moves by the length L of the system [m],
+//! The scale is the change of C, to second order, when one particle moves by the length L of the system [m]:
 //!
 //! ```text
-//! scale = max_i max(|∂C/∂x_i| L, ½ |∂²C/∂x_i²| L²)     at the start, unless it is given [C]; of ∂²C/∂x_i² the largest entry
+//! scale = max_i max(|∂C/∂x_i| L, ½ |∂²C/∂x_i²| L²)     at the start, unless given [C]; of ∂²C/∂x_i² the largest entry
 //! ```
 //!
-//! so that a tolerance means the same for `dist(a, b) - r`, its square, a thousandfold of it, and a square whose gradient
-//! vanishes where it holds. It is measured once and stays.
+//! With this scale a tolerance means the same for `dist(a, b) - r`, its square, a thousandfold of it, and a square
+//! whose gradient vanishes where it holds. The scale is measured once and stays.
 //!
-//! Fails where C or a derivative is not finite. At the start that is refused; later all of the row becomes NaN, so that no
-//! method takes it for zero, and the step ends in `StepError`.
+//! Fails where C or a derivative is not finite. Building the system refuses that at the start. Later the whole row
+//! becomes NaN, so that no method takes it for zero, and the step ends in `StepError`.
 
 use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::expression::{Expression, LONGEST_GRADIENT};
@@ -30,7 +30,7 @@ use crate::stiffness::Stiffness;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionConstraint {
     expression: Expression,
-    /// What C does around the start.
+    /// How C changes around the start.
     start: Start,
     /// [C], where it was given.
     scale: Option<f64>,
@@ -45,11 +45,11 @@ struct Start {
 }
 
 impl ExpressionConstraint {
-    /// Holds an expression at zero. `positions` are those of all particles at the start [m], d·n numbers: the scale of the row
-    /// is measured there, at t = 0.
+    /// Holds an expression at zero. `positions` are those of all particles at the start [m], d·n numbers. The scale
+    /// of the row is measured there, at t = 0.
     pub fn new(expression: Expression, positions: &[f64]) -> Self {
         let d = expression.dimension();
-        // What is not there is refused where the system is built.
+        // Building the system refuses a particle that does not exist.
         let is_there = expression.particles().iter().all(|id| d * (id.0 + 1) <= positions.len());
         let start = match d {
             _ if !is_there => Start { slope: 0.0, bend: 0.0, is_finite: true },
@@ -59,7 +59,7 @@ impl ExpressionConstraint {
         ExpressionConstraint { expression, start, scale: None }
     }
 
-    /// The same with a scale [C], above 0, that is given: the |C| that counts as a relative error of one.
+    /// The same constraint with a given scale [C], above 0: the |C| that counts as a relative error of one.
     pub fn with_scale(self, scale: f64) -> Self {
         ExpressionConstraint { scale: Some(scale), ..self }
     }
@@ -69,10 +69,10 @@ impl ExpressionConstraint {
         &self.expression
     }
 
-    /// `Ok` if its residual can be held at zero from the start on.
+    /// `Ok` if the expression can be a constraint.
     ///
     /// # Errors
-    /// No particle, velocities, numbers that are not finite at the start, no scale.
+    /// In words: no particle, velocities, numbers that are not finite at the start, no scale.
     pub fn check(&self) -> Result<(), ConstraintError> {
         if self.expression.uses_velocities() {
             return Err(ConstraintError::DependsOnVelocities);
@@ -128,7 +128,7 @@ impl Holds for ExpressionConstraint {
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
         let mut gradient = [0.0; LONGEST_GRADIENT];
         let (C, Ct) = self.expression.jet_and_gradient(motion.q, motion.qd, motion.t, &mut gradient);
-        // Where C has no value its slope may still have one: 1/x of ln x at −1.
+        // Where C has no value its derivative may still have one: 1/x of ln x at −1.
         let lost = if C.value.is_finite() { 0.0 } else { f64::NAN };
         let blocks = gradient[..self.expression.gradient_len()].chunks_exact(D);
         let J = blocks.map(|g| point::<D>(g).map(|component| component + lost));
@@ -157,7 +157,7 @@ impl Holds for ExpressionConstraint {
         });
     }
 
-    /// As it is written, in both.
+    /// The text has one form only.
     fn formulated(&self, _: Formulation) -> Self {
         self.clone()
     }
@@ -172,6 +172,6 @@ fn point<const D: usize>(numbers: &[f64]) -> Point<D> {
 }
 
 /// The Frobenius norm, at least the spectral one.
-fn size<const D: usize>(block: &Block<D>) -> f64 {
+pub(super) fn size<const D: usize>(block: &Block<D>) -> f64 {
     block.iter().flatten().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

@@ -1,5 +1,5 @@
-//! Gears: whole multiples of the angles of arms, and ways along directions, that add up to a given angle but for whole turns. Wheels that
-//! mesh, planets and all, a belt, a rack and its pinion, the hands of a clock. In the plane.
+//! Gears: whole multiples of the angles of arms, and displacements along directions, with a given sum but for whole
+//! turns. Meshing wheels, planets and all, a belt, a rack and its pinion, the hands of a clock. In the plane.
 //!
 //! ```text
 //! d of each arm,   arg d = atan2(d_y, d_x)
@@ -7,34 +7,37 @@
 //! ∂C/∂d = z (−d_y, d_x)/|d|² + k,   C_t = −α̇
 //! ```
 //!
-//! An arm that goes round adds z whole turns: as z is an integer, C(q, t) does not depend on how often it did, and no count is kept. That
-//! is what teeth are: wheels of z₁ and z₂ teeth fit into each other wherever z₁ φ₁ + z₂ φ₂ is right but for whole turns, one a
-//! tooth. Angles are counted from the line between the centres, from c₁ to c₂ at ψ, which may itself turn (a planet):
+//! An arm that goes round adds z whole turns. z is an integer, so C(q, t) does not depend on the number of turns, and
+//! none is counted. Teeth work in the same way: wheels of z₁ and z₂ teeth fit into each other wherever z₁ φ₁ + z₂ φ₂
+//! is right but for whole turns, one turn a tooth. Angles are counted from the line between the centres, from c₁ to
+//! c₂ at ψ, which may itself turn (a planet):
 //!
 //! ```text
 //! z₁ (φ₁ − ψ) + z₂ (φ₂ − ψ) = α           outside each other; z₂ < 0: one inside the other, or a belt
 //! φ − k·d = α, k = e/r, d = x_p − x_c     a rack that moves along e past a pinion of radius r to the left of it
 //! ```
 //!
-//! A common factor of the z is taken out: what is left says the same and has the fewest places that fit. The wheels turn by λ z₁
-//! and λ z₂, and what is left over of that pushes the centres.
+//! A common factor of the z is taken out. The remaining numbers say the same and have the fewest places that fit. The
+//! wheels turn by λ z₁ and λ z₂, and the rest of the torque pushes the centres.
 //!
-//! Fails where an arm has no length. C jumps half a tooth away from where it holds: a step that starts there slips to the next. A ratio that is
-//! no fraction of whole numbers has no such function of the positions: it would need a count of turns.
+//! Fails where an arm has no length. C jumps half a tooth away from where it holds: a step that starts there slips to
+//! the next tooth. A ratio that is no fraction of whole numbers has no such function of the positions, because it
+//! would need a count of turns.
 
 use super::angle::within_half_a_turn;
 use super::arms::Arms;
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::all_finite;
 use crate::driven::Driven;
 use crate::number::{Number, dot};
 use crate::space::ParticleId;
 
-/// More leave less than a part in a thousand of a turn between two teeth. The sum of two wheels' counts, too.
+/// The largest number of teeth, also of the sum of two wheels. With more, two teeth would be less than a thousandth
+/// of a turn apart.
 const MOST_TEETH: u32 = 1000;
 
-/// What an arm adds.
+/// The summand of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     /// z arg d.
@@ -43,7 +46,7 @@ enum Part {
     Way([f64; 2]),
 }
 
-/// Angles and ways that are coupled, in the plane.
+/// Coupled angles and displacements, in the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gears {
     arms: Arms,
@@ -52,8 +55,8 @@ pub struct Gears {
 }
 
 impl Gears {
-    /// Two wheels with so many teeth, each an arm from its centre to a point of it, that mesh at α [rad]; one of the numbers is negative where
-    /// one wheel lies inside the other, or a belt connects them.
+    /// Two wheels that mesh at α [rad]. Each wheel is an arm from its centre to one of its points, with its number of
+    /// teeth. One of the numbers is negative where one wheel lies inside the other, or a belt connects them.
     pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Driven>) -> Self {
         let [[c1, _], [c2, _]] = wheels;
         let common = divisor(teeth[0].unsigned_abs(), teeth[1].unsigned_abs()).max(1) as i32;
@@ -64,14 +67,14 @@ impl Gears {
         Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
     }
 
-    /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: what turns in bearings of the ground.
+    /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: wheels in bearings of the ground.
     pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Driven>) -> Self {
         let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
-    /// A pinion, an arm from its centre to a point of it, and a point of the rack that moves along a direction of any length; the pinion of
-    /// this radius [m] is to the left of it.
+    /// A pinion, an arm from its centre to one of its points, and a point of the rack, which moves along a direction
+    /// of any length. The pinion, of this radius [m], is to the left of that direction.
     pub fn rack(
         pinion: [ParticleId; 2],
         rack: ParticleId,
@@ -86,7 +89,7 @@ impl Gears {
         Gears { arms: Arms::new([pinion, [pinion[0], rack]]), parts, angle: angle.into() }
     }
 
-    /// The arms whose angles it adds, each with its z; of two wheels that mesh also the arm from centre to centre.
+    /// The arms whose angles are added, each with its z; of two meshing wheels also the arm from centre to centre.
     pub fn turns(&self) -> impl Iterator<Item = ([ParticleId; 2], i32)> + '_ {
         self.parts.iter().enumerate().filter_map(|(arm, part)| match *part {
             Part::Turn(z) => Some((self.arms.ends(arm), z)),
@@ -94,7 +97,7 @@ impl Gears {
         })
     }
 
-    /// The arms whose ways it adds, from a pinion's centre to its rack, each with k [rad/m].
+    /// The arms whose displacements are added, from the centre of a pinion to its rack, each with k [rad/m].
     pub fn ways(&self) -> impl Iterator<Item = ([ParticleId; 2], [f64; 2])> + '_ {
         self.parts.iter().enumerate().filter_map(|(arm, part)| match *part {
             Part::Way(k) => Some((self.arms.ends(arm), k)),
@@ -104,30 +107,18 @@ impl Gears {
 }
 
 impl Smooth for Gears {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
-    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
-        super::error::only_in(2, dimension)
-    }
+    const ONLY_IN: Option<usize> = Some(2);
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.arms.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (angle, rate) = self.angle.at(t);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (angle, rate) = self.angle.at(at.t);
         let way = |k: [f64; 2]| -> [N; D] { std::array::from_fn(|i| N::constant(k[i])) };
         let mut sum = -angle;
         for (arm, part) in self.parts.iter().enumerate() {
-            let d = self.arms.vector(arm, x);
+            let d = self.arms.vector(arm, at);
             sum = sum
                 + match *part {
                     Part::Turn(z) => N::atan2(d[1], d[0]).times(z.into()),
@@ -136,14 +127,14 @@ impl Smooth for Gears {
         }
         let slope = |arm: usize| match self.parts[arm] {
             Part::Turn(z) => {
-                let d = self.arms.vector(arm, x);
+                let d = self.arms.vector(arm, at);
                 let factor = N::constant(z.into()) / dot(d, d);
                 std::array::from_fn(|i| if i == 0 { -(factor * d[1]) } else { factor * d[0] })
             }
             Part::Way(k) => way(k),
         };
         self.arms.spread(slope, gradient);
-        (within_half_a_turn(sum), -rate)
+        Residual { C: within_half_a_turn(sum), C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

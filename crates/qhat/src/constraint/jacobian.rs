@@ -1,11 +1,11 @@
-//! J, one block for each particle of a row, and the writer through which a constraint fills its rows.
+//! J in blocks, one for each particle of a row, and the writer through which a constraint fills its rows.
 
 use super::layout::Layout;
 use super::rows::Rows;
 use crate::point::{Point, add, block, dot, scaled};
 use crate::space::ParticleId;
 
-/// J = ∂C/∂q, m × d·n, stored as one block of d numbers for each particle a row touches. Unit: [C]/m.
+/// J = ∂C/∂q, m × d·n, stored as one block of d numbers for each particle that a row depends on. Unit: [C]/m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jacobian {
     pub(crate) layout: Layout,
@@ -44,7 +44,7 @@ impl Jacobian {
         self.dimension * self.particle_count
     }
 
-    /// The whole matrix, row after row (m·d·n numbers): for looking at, and for tests.
+    /// The whole matrix, row after row (m·d·n numbers), for display and tests.
     pub fn to_dense(&self) -> Vec<f64> {
         let columns = self.column_count();
         let mut dense = vec![0.0; self.row_count() * columns];
@@ -102,7 +102,7 @@ impl Jacobian {
     }
 }
 
-/// Where a constraint writes its rows, in the order of the layout.
+/// The writer of the rows of all constraints, one after the other in the order of the layout.
 pub(crate) struct RowWriter<'a, const D: usize> {
     pub(super) rows: &'a mut Rows,
     pub(super) row: usize,
@@ -110,23 +110,21 @@ pub(crate) struct RowWriter<'a, const D: usize> {
 }
 
 impl<const D: usize> RowWriter<'_, D> {
-    /// One row that does not depend on time: C, Ċ, γ and its blocks of J, one for each particle that the constraint names.
+    /// Writes one row that does not depend on time: C, Ċ, γ and its blocks of J, one for each particle of the
+    /// constraint.
     #[inline(always)]
     pub(crate) fn write<const K: usize>(&mut self, C: f64, Cd: f64, gamma: f64, blocks: [Point<D>; K]) {
-        // C_t is zero from the beginning.
+        // C_t was zero when the rows were made, and stays zero.
         self.put(C, Cd, gamma, blocks);
     }
 
-    /// One row whose blocks come one at a time: `fill` is told which particles they belong to and where to put them, and returns
-    /// C, Ċ, γ and C_t.
-    pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut dyn FnMut(Point<D>)) -> [f64; 4]) {
+    /// Writes one row through `fill`, which gets the particles of the row and the room for their blocks, D numbers
+    /// each. It returns C, Ċ, γ and C_t.
+    pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut [f64]) -> [f64; 4]) {
         let Jacobian { layout, blocks, .. } = &mut self.rows.J;
         let entries = layout.start[self.row]..layout.start[self.row + 1];
-        let mut places = blocks[entries.start * D..entries.end * D].chunks_exact_mut(D);
-        let [C, Cd, gamma, Ct] = fill(&layout.particle[entries.clone()], &mut |block| {
-            places.next().expect("a block for each particle").copy_from_slice(&block);
-        });
-        debug_assert!(places.next().is_none(), "a block for each particle");
+        let room = &mut blocks[entries.start * D..entries.end * D];
+        let [C, Cd, gamma, Ct] = fill(&layout.particle[entries.clone()], room);
         self.rows.C[self.row] = C;
         self.rows.Cd[self.row] = Cd;
         self.rows.gamma[self.row] = gamma;
@@ -135,8 +133,8 @@ impl<const D: usize> RowWriter<'_, D> {
         self.row += 1;
     }
 
-    /// One row of C(q, t) = 0, with Ċ = J q̇ + C_t and γ = (∂(J q̇)/∂q) q̇ + 2 J_t q̇ + C_tt; the blocks of J may come from an
-    /// iterator.
+    /// Writes one row of C(q, t) = 0, with Ċ = J q̇ + C_t and γ = (∂(J q̇)/∂q) q̇ + 2 J_t q̇ + C_tt. The blocks of J
+    /// may come from an iterator.
     #[inline(always)]
     pub(crate) fn write_driven(
         &mut self,

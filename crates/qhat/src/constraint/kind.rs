@@ -1,4 +1,4 @@
-//! What every kind of constraint answers, and the words in which it answers.
+//! Kind: the questions that every kind of constraint answers, and the types of the answers.
 
 use super::error::ConstraintError;
 use super::jacobian::RowWriter;
@@ -8,17 +8,17 @@ use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 use std::ops::Range;
 
-/// What every constraint answers. [C] is the unit of its residual.
+/// The questions that every constraint answers. [C] is the unit of its residual.
 pub(crate) trait Holds {
     /// Number of scalar rows in d dimensions.
     fn row_count(&self, dimension: usize) -> usize;
 
-    /// Whether its rows are the components of a vector, x, y and z, and not several scalars.
+    /// Whether the rows are the components x, y and z of one vector. Otherwise they are separate scalars.
     fn is_vector(&self) -> bool {
         false
     }
 
-    /// The particles its rows touch, each once, in the order of the blocks that `evaluate` writes.
+    /// The particles that each row depends on, each once, in the order of the blocks that `evaluate` writes.
     fn particles(&self) -> Vec<ParticleId>;
 
     /// Writes C, Ċ, γ, C_t and the blocks of J, one row after the other.
@@ -27,21 +27,21 @@ pub(crate) trait Holds {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// How far its rows give way.
+    /// How soft the rows are.
     fn softness(&self) -> Softness {
         Softness::default()
     }
 
-    /// What rows that give way are to a method that does not solve at the end of the step.
+    /// The force that takes the place of soft rows in methods that do not solve at the end of the step.
     fn as_force(&self) -> Option<Force> {
         None
     }
 
-    /// A bound on the norm of one block of ∂²C/∂q² [C/m²]: times |λ| it is geometric stiffness.
+    /// A bound on the norm of one block of ∂²C/∂q² [C/m²]. Times |λ| it bounds the geometric stiffness.
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
-    /// Calls `visit(i, j, block)`, i ≤ j counting its particles, with the geometric stiffness −Σ λ ∂²C/∂q² for the
-    /// multipliers of its rows [N/m]; not where it is zero.
+    /// Calls `visit(i, j, block)` with the geometric stiffness −Σ λ ∂²C/∂q² [N/m] for the multipliers of the rows. i
+    /// ≤ j count the particles of the constraint. Zero blocks may be left out.
     fn geometric_stiffness<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -49,51 +49,52 @@ pub(crate) trait Holds {
         visit: &mut impl FnMut(usize, usize, Stiffness<D>),
     );
 
-    /// Whether the gradient of a row vanishes on one of its particles only where it vanishes on all: then the row can be
-    /// eliminated together with any of them.
+    /// Whether the gradient of a row vanishes on one of its particles only where it vanishes on all of them. Such a
+    /// row can be eliminated together with any of its particles.
     fn pulls_on_each(&self) -> bool {
         false
     }
 
-    /// Which of its rows open and close.
+    /// The rows that open and close.
     fn contacts(&self, _dimension: usize) -> Vec<ContactRows> {
         Vec::new()
     }
 
-    /// The tension or thrust that its first row does not survive [N].
+    /// The tension or thrust of the first row at which the constraint breaks [N].
     fn breaks_at(&self) -> Option<f64> {
         None
     }
 
-    /// The same constraint in the forms of another formulation.
+    /// The same constraint in the form that a formulation asks for.
     fn formulated(&self, formulation: Formulation) -> Self;
 
-    /// `Ok` if it can be in d dimensions.
+    /// Why the constraint has no meaning in d dimensions, in words.
     fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
         Ok(())
     }
 
-    /// `Ok` if its numbers are in range.
+    /// What is wrong with the numbers of the constraint, in words.
     fn check(&self) -> Result<(), ConstraintError>;
 }
 
-/// A row of a constraint that opens and closes, C ≥ 0 and λ ≥ 0, with its rows of friction; rows count from its first.
+/// A contact of a constraint: a row that opens and closes, C ≥ 0 and λ ≥ 0, with its rows of friction. Rows count
+/// from the first row of the constraint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ContactRows {
     pub(crate) normal: usize,
     pub(crate) tangents: Range<usize>,
-    /// e.
+    /// e, the coefficient of restitution.
     pub(crate) restitution: f64,
-    /// μ.
+    /// μ of Coulomb's law.
     pub(crate) friction: f64,
 }
 
-/// How far a row gives way: C + α λ + α c Ċ = 0. [α] = m/N, [c] = N·s/m for a rod.
+/// The softness of a row: C + α λ + α c Ċ = 0. [α] = m/N and [c] = N·s/m for a rod.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Softness {
     /// α ≥ 0; zero is rigid.
     pub(crate) compliance: f64,
-    /// c ≥ 0, of a damper beside the compliance.
+    /// c ≥ 0 of a damper beside the compliance.
     pub(crate) damping: f64,
 }
 
@@ -102,18 +103,19 @@ impl Softness {
         self.compliance == 0.0
     }
 
-    /// 1 + α c/h: how much faster C must follow where its rate is C/h.
+    /// 1 + α c/h: the factor by which the damper multiplies C where the rate is C/h.
     #[inline(always)]
     pub(crate) fn lag(&self, h: f64) -> f64 {
         1.0 + self.compliance * self.damping / h
     }
 }
 
-/// Which forms of the constraints are in use.
+/// The form of the constraints: well conditioned, or that of the program this engine descends from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formulation {
-    /// Length of rods and vector nails: well conditioned wherever the constraint holds.
+    /// The length form of rods and the vector form of nails: well conditioned wherever the constraint holds.
     Modern,
-    /// The source's own: squared distances and scalar nails, whose gradient vanishes exactly where they must hold.
+    /// The source's own form: squared distances, and scalar nails, whose gradient vanishes exactly where they must
+    /// hold.
     Classic,
 }

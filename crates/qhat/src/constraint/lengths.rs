@@ -1,5 +1,5 @@
-//! Lengths: a weighted sum of distances, Σ w |d| = L(t). A rope over pulleys, a block and tackle, a winch; two lengths that stay
-//! equal, or in a ratio.
+//! Lengths: a weighted sum of distances, Σ w |d| = L(t). A rope over pulleys, a block and tackle, a winch; two
+//! lengths that are equal, or in a ratio.
 //!
 //! ```text
 //! d = x_b − x_a of each segment,   n = d/|d|
@@ -7,14 +7,15 @@
 //! ∂C/∂d = w n,   C_t = −L̇
 //! ```
 //!
-//! −λ is the tension of the rope: a segment of weight w pulls its ends together with −w λ. Such a rope also pushes where λ > 0.
+//! −λ is the tension of the rope: a segment of weight w pulls its ends together with −w λ. The constraint is an
+//! equality, so this rope also pushes where λ > 0.
 //!
-//! A segment without length has no direction; its gradient is taken as zero, the shortest subgradient of |d|. Near there its
-//! curvature 1/|d| grows without bound, so that a load must not be pulled into its block.
+//! A segment without length has no direction. Its gradient is taken as zero, the shortest subgradient of |d|. Near
+//! there its curvature 1/|d| grows without bound, so a load must not be pulled into its block.
 
 use super::arms::Arms;
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::{Number, norm, scaled};
@@ -35,7 +36,7 @@ impl Lengths {
         Lengths { segments: Arms::new(ends), weights, total: total.into() }
     }
 
-    /// A rope of length L [m] over points, in order; a point that it passes several times is named as often.
+    /// A rope of length L [m] over points, in order. A point that the rope passes several times is named as often.
     pub fn pulley(points: &[ParticleId], total: impl Into<Driven>) -> Self {
         let segments: Vec<_> = points.windows(2).map(|pair| ([pair[0], pair[1]], 1.0)).collect();
         Lengths::new(&segments, total)
@@ -46,31 +47,21 @@ impl Lengths {
         Lengths::new(&[(ab, 1.0), (cd, -k)], 0.0)
     }
 
-    /// Its segments, each from one particle to another, with their weights.
+    /// The segments, each from one particle to another, with their weights.
     pub fn segments(&self) -> impl Iterator<Item = ([ParticleId; 2], f64)> + '_ {
         self.weights.iter().enumerate().map(|(segment, &weight)| (self.segments.ends(segment), weight))
     }
 }
 
 impl Smooth for Lengths {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.segments.particles().get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (total, rate) = self.total.at(t);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (total, rate) = self.total.at(at.t);
         let length = |segment: usize| {
-            let d = self.segments.vector(segment, x);
+            let d = self.segments.vector(segment, at);
             let is_point = d.iter().all(|component| component.value() == 0.0);
             if is_point { (N::constant(0.0), [N::constant(0.0); D]) } else { (norm(d), d) }
         };
@@ -83,7 +74,7 @@ impl Smooth for Lengths {
             if length.value() == 0.0 { d } else { scaled(N::constant(self.weights[segment]) / length, d) }
         };
         self.segments.spread(slope, gradient);
-        (C, -rate)
+        Residual { C, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -1,4 +1,5 @@
-//! Limits: two particles a and b stay no nearer than L₀ and no farther than L₁. A rope has only L₁, a strut that may come apart only L₀.
+//! Limits: two particles a and b stay no nearer than L₀ and no farther than L₁. A rope has only L₁, a loose strut
+//! only L₀.
 //!
 //! ```text
 //! d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
@@ -7,7 +8,8 @@
 //! ∂²C/∂x² = ∓(I − nnᵀ)/|d| on aa and bb, its negative on ab
 //! ```
 //!
-//! Where it jerks taut, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0: no direction; the first axis is taken.
+//! Where a limit is reached, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0, which has no direction; the
+//! first axis is taken.
 
 use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
 use crate::allowed::{check_restitution, check_strength, not_negative, positive};
@@ -27,19 +29,19 @@ pub struct Limits {
     pub shortest: Option<f64>,
     /// L₁ [m], positive and more than L₀.
     pub longest: Option<f64>,
-    /// e, in [0, 1]: the part of the closing speed that comes back where a limit is hit.
+    /// e, in [0, 1]: the part of the closing speed that an impact at a limit gives back.
     pub restitution: f64,
-    /// The tension or thrust that it does not survive [N].
+    /// The tension or thrust at which the rope or strut breaks [N].
     pub breaks_at: Option<f64>,
 }
 
 impl Limits {
-    /// A rope: slack up to its length [m], and then it does not stretch.
+    /// A rope: slack while shorter than its length [m], taut at its length.
     pub fn rope(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None }
     }
 
-    /// A strut that keeps two particles at least so far apart [m], and lets them go farther.
+    /// A loose strut: keeps two particles at least a length [m] apart.
     pub fn strut(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Limits { a, b, shortest: Some(length), longest: None, restitution: 0.0, breaks_at: None }
     }
@@ -64,9 +66,9 @@ impl Limits {
         [(-1.0, self.longest), (1.0, self.shortest)].into_iter().filter_map(|(sign, limit)| Some((sign, limit?)))
     }
 
-    /// Signed tension [N] of the multipliers of its rows, positive where it pulls its ends together.
+    /// Signed tension [N] from the multipliers of the rows, positive where the ends are pulled together.
     pub(crate) fn tension(&self, lambda: &[f64]) -> f64 {
-        // The sum starts at +0 and adds: while slack it is 0 and not −0.
+        // The sum starts at +0, so that a slack rope has the tension 0 and not −0.
         self.rows().zip(lambda).fold(0.0, |pull, ((sign, _), lambda)| pull - sign * lambda)
     }
 }

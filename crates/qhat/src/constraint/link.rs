@@ -1,38 +1,39 @@
-//! Link: what acts along the line of two particles a and b, and therefore has a tension: a rod, a rope, a strut.
+//! Link: a constraint that acts along the line of two particles a and b and has a tension: a rod, a rope, a strut.
 //!
 //! ```text
 //! d = x_a − x_b,   n = d/|d|
-//! Q̂ = −T n on a, T n on b        T > 0 pulls the two together, T < 0 pushes them apart, T = 0 while it is slack or broken
+//! Q̂ = −T n on a, T n on b        T > 0 pulls the two together, T < 0 pushes them apart, T = 0 while slack or broken
 //! rod               T = −λ, or −2|d|λ in the squared form
 //! rope and strut    T = λ of the longest − λ of the shortest, of which one at most is not 0
 //! ```
 //!
-//! T [N] is as applied: with λ scaled by s where the row is rigid.
+//! T [N] is the tension as applied: λ is scaled by s where the row is rigid.
 
 use super::{Constraint, Distance, Limits};
 use crate::point::Motion;
 use crate::space::ParticleId;
 use std::ops::Range;
 
-/// A constraint that acts along the line of two particles, as faces draw and report it: `tension` has one number for each.
+/// A constraint that acts along the line of two particles, as the faces draw and report it. `tension` has one number
+/// for each link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<'a> {
-    /// Its name.
+    /// The name of the constraint.
     pub name: &'a str,
     /// One end.
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// The least its ends are apart [m]; none for a rope.
+    /// The least distance of the ends [m]; none for a rope.
     pub shortest: Option<f64>,
-    /// The most its ends are apart [m]; none for a strut that lets them go. A rod has one length: both are the same.
+    /// The largest distance of the ends [m]; none for a loose strut. Of a rod both are its length.
     pub longest: Option<f64>,
-    /// Its rows in C, λ and J; where it has two limits, the longest comes first.
+    /// The rows of the constraint in C, λ and J. Of two limits the longest comes first.
     pub rows: Range<usize>,
 }
 
 impl Link<'_> {
-    /// Whether it holds one length.
+    /// Whether the link holds one length.
     pub fn is_rod(&self) -> bool {
         self.shortest == self.longest
     }
@@ -55,7 +56,7 @@ impl Constraint {
 }
 
 impl<'a> LinkKind<'a> {
-    /// What faces see of it.
+    /// The link as the faces see it.
     pub(crate) fn link(&self, name: &'a str, rows: Range<usize>) -> Link<'a> {
         match *self {
             LinkKind::Rod(&Distance { a, b, length, .. }) => {
@@ -65,10 +66,10 @@ impl<'a> LinkKind<'a> {
         }
     }
 
-    /// T [N] for λ of its first row and those after it.
+    /// T [N] from λ of the rows of the constraint.
     pub(crate) fn tension<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> f64 {
         match self {
-            // A rod that gives way is a force, and no factor acts on it.
+            // A soft rod is a force, to which s does not apply.
             LinkKind::Rod(rod) if rod.compliance > 0.0 => rod.tension(motion, lambda[0]),
             LinkKind::Rod(rod) => rod.tension(motion, s * lambda[0]),
             LinkKind::Limits(limits) => s * limits.tension(lambda),

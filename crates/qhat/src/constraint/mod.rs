@@ -1,13 +1,13 @@
-//! Constraints C(q, t) = 0, one kind a file, and the rows they make together.
+//! Constraints C(q, t) = 0: one file a kind, and the rows that all constraints make together.
 //!
-//! To add a kind: write one file here that derives C, Ċ, J, γ, C_t and ∂²C/∂q² in its head and implements `Holds`, and name it in the
-//! list below.
+//! `docs/adding-a-constraint.md` adds a kind step by step.
 
 mod anchor;
 mod angle;
 mod area;
 mod arms;
 mod curve;
+mod custom;
 mod direction;
 mod distance;
 mod error;
@@ -41,6 +41,7 @@ pub use anchor::{Anchor, DrivenPoint};
 pub use angle::Angle;
 pub use area::Area;
 pub use curve::Curve;
+pub use custom::{Custom, CustomConstraint};
 pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
 pub use error::ConstraintError;
@@ -124,7 +125,7 @@ macro_rules! constraints {
                 lambda: &[f64],
                 visit: &mut impl FnMut(usize, usize, Stiffness<D>),
             ) {
-                match self { $(Constraint::$kind(constraint) => constraint.geometric_stiffness(motion, lambda, visit),)* }
+                match self { $(Constraint::$kind(kind) => kind.geometric_stiffness(motion, lambda, visit),)* }
             }
             fn pulls_on_each(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.pulls_on_each(),)* }
@@ -149,19 +150,21 @@ macro_rules! constraints {
 }
 
 impl Constraint {
-    /// A rod: large systems are made of them, and what asks for one alone need not go through every kind.
+    /// The rod, if it is one. Large systems are made of rods, and a caller that needs only them skips the match over
+    /// kinds.
     pub(crate) fn as_rod(&self) -> Option<&Distance> {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
 
-    /// C at t = 0 with the particles at q [m], flat, d numbers each: what a constraint made for 0 would have to be made for, to hold there.
+    /// C at t = 0 with the particles at q [m], flat, d numbers each. A constraint made for the target 0 tells in this
+    /// way which target (length, angle, area) the given positions satisfy.
     ///
     /// # Panics
-    /// Where q lacks a particle that it names.
+    /// If q lacks a particle that the constraint names.
     pub fn residual(&self, dimension: Dimension, positions: &[f64]) -> Vec<f64> {
         let d = dimension.number();
         let mut rows = Rows::new(Layout::new(std::iter::once(self), d), d, positions.len() / d);
-        // C depends on no velocity: any will do.
+        // C depends on no velocity, so q serves as q̇.
         in_dimension!(dimension, D => {
             rows.evaluate(std::iter::once(self), Motion::<D> { q: positions, qd: positions, t: 0.0 });
         });
@@ -180,13 +183,15 @@ constraints! {
     Obstacle,
     /// An expression that stays zero.
     ExpressionConstraint,
-    /// A linear relation between the places of particles.
+    /// A residual written in Rust that stays zero.
+    Custom,
+    /// A linear relation between the positions of particles.
     Relation,
     /// A weighted sum of distances: a rope over pulleys, lengths in a ratio.
     Lengths,
     /// The angle from one arm to another, or a motor.
     Angle,
-    /// Wheels, racks and pinions that mesh.
+    /// Meshing wheels, racks and pinions.
     Gears,
     /// A polygon that keeps its area.
     Area,
@@ -198,7 +203,7 @@ constraints! {
     OnLine,
     /// A particle on a plane.
     OnPlane,
-    /// A particle at a distance from a point or another particle that may be driven.
+    /// A particle at a distance, which may be driven, from a point or another particle.
     OnSphere,
     /// A particle on a circle in space.
     OnCircle,

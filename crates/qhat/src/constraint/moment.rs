@@ -1,13 +1,14 @@
-//! How far a point is beside a line, as smooth rows: components of d × w over |d|, with w from a point of the line.
+//! Moment: the distance of a point from a line as smooth rows, components of d × w over |d|, with w from a point of
+//! the line.
 //!
 //! ```text
 //! C_k = (d × w)_k/|d|           in the plane the one component k = z, the signed distance
 //! ∂C/∂w = (e_k × d)/|d|,   ∂C/∂d = (w × e_k)/|d| − C d/|d|²
 //! ```
 //!
-//! In space d × w has no component along d, so two of the three are enough: all but the one along which d is longest. Their gradients
-//! have at least 0.7 of full length and stand at 60° or more. Where d turns so far that another component is longest the rows change, but
-//! not what they hold: no force jumps.
+//! In space d × w has no component along d, so two of the three components are enough: all but the one along which d
+//! is longest. Their gradients have at least 0.7 of full length and stand at 60° or more. Where d turns so far that
+//! another component is longest, the rows change, but the set of points that they allow does not: no force jumps.
 
 use crate::number::{Number, dot, scaled};
 

@@ -1,6 +1,6 @@
 //! Nail: one particle stays at the point p.
 //!
-//! vector form (default), d rows, [C] = m, λ in N is the nail's force on the particle:
+//! vector form (default), d rows, [C] = m, λ in N is the force of the nail on the particle:
 //!
 //! ```text
 //! C = x − p,   Ċ = v,   J = I,   γ = 0
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
-//! That is why the source needed its diagonal drag.
+//! The source needed its diagonal drag for this reason.
 
 use super::{ConstraintError, Formulation, Holds, Relation, RowWriter};
 use crate::allowed::all_finite;

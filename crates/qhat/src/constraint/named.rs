@@ -1,4 +1,4 @@
-//! A constraint under the name that a user gave it.
+//! A constraint with the name that a user gave it.
 
 use super::Constraint;
 

@@ -7,16 +7,18 @@
 //!
 //! half-space  φ = n·x − p                  H = 0
 //! ball        φ = ±(|x − c| − r)           H = ±(I − nnᵀ)/|x − c|       + outside, − inside
-//! box         φ = |max(y, 0)| + min(max_k y_k, 0) − ρ,   y_k = |x_k − c_k| − (half_k − ρ);   H ≠ 0 only off a corner or an edge
+//! box         φ = |max(y, 0)| + min(max_k y_k, 0) − ρ,   y_k = |x_k − c_k| − (half_k − ρ)
+//!             H ≠ 0 only off a corner or an edge
 //! ```
 //!
-//! ρ, a thousandth of the smallest half, is the radius of the edges and corners of a box. A sharp edge has no normal: what slides over it would
-//! be led round it, or flung off it, by forces without bound. Over a round one it leaves where v² > g ρ, and goes round where it is slower.
+//! ρ, a thousandth of the smallest half, is the radius of the edges and corners of a box. A sharp edge has no normal:
+//! forces without bound would lead a sliding particle round it, or fling it off. On a round edge a particle takes off
+//! where v² > g ρ, and goes round where it is slower.
 //!
-//! The tangential rows have no positions to hold: sticking is a matter of velocities. Their true γ is ṫ·v, which is zero where
-//! v = 0, the only place where they take part. Friction is Coulomb's: |λ_t| ≤ μ λ_n.
+//! The tangential rows have no positions to hold, because sticking is a matter of velocities. Their true γ is ṫ·v. It
+//! is zero where v = 0, and they are active only there. Friction is Coulomb's: |λ_t| ≤ μ λ_n.
 //!
-//! Fails in the centre of a ball, where there is no direction; the first axis is taken.
+//! Fails in the centre of a ball, which has no direction; the first axis is taken.
 
 use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
 use crate::allowed::{all_finite, check_restitution, finite, not_negative, positive};
@@ -25,17 +27,17 @@ use crate::point::{Motion, Point, Vector, dot, first, first_axis, minus, norm, s
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// ρ of a box, of its smallest half.
+/// ρ of a box, relative to its smallest half.
 const ROUND: f64 = 1e-3;
 
-/// A surface with an outside; third components are ignored in two dimensions.
+/// The surface of an obstacle; third components are ignored in two dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Surface {
     /// The particle stays where normal·x ≥ offset: ground, a wall, a slope.
     HalfSpace {
         /// A direction of any length.
         normal: [f64; 3],
-        /// [m], along the unit normal.
+        /// The offset of the plane along the unit normal [m].
         offset: f64,
     },
     /// A circle or sphere.
@@ -47,7 +49,8 @@ pub enum Surface {
         /// Whether the particle stays inside.
         inside: bool,
     },
-    /// A box along the axes that the particle stays out of. Its edges are round, with a thousandth of the smallest half for their radius.
+    /// A box along the axes; the particle stays outside. The radius of its round edges is a thousandth of the
+    /// smallest half.
     Box {
         /// [m].
         center: [f64; 3],
@@ -84,7 +87,7 @@ impl Surface {
 pub struct Obstacle {
     /// The particle.
     pub particle: ParticleId,
-    /// What it meets.
+    /// The surface.
     pub surface: Surface,
     /// e, in [0, 1]: the part of the closing speed that an impact gives back.
     pub restitution: f64,
@@ -151,7 +154,7 @@ fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
     let sign: Point<D> = d.map(|d| if d < 0.0 { -1.0 } else { 1.0 });
     let y: Point<D> = std::array::from_fn(|k| d[k].abs() - (half[k] - rho));
     let near = if y.iter().filter(|&&y| y > 0.0).count() > 1 {
-        // Off a corner or an edge: as from a point.
+        // Off a corner or an edge the distance is that from a point.
         from_point(std::array::from_fn(|k| sign[k] * y[k].max(0.0)))
     } else {
         let nearest = (1..D).fold(0, |nearest, k| if y[k] > y[nearest] { k } else { nearest });
@@ -161,8 +164,9 @@ fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
     Near { phi: near.phi - rho, ..near }
 }
 
-/// Unit vectors along the surface: in the plane n turned by a quarter, in space two that are orthogonal, without a jump but
-/// where n_z passes −0.9 (zero would do for a unit vector, but is where everything that moves in the plane lies). Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
+/// Unit vectors along the surface: in the plane n turned by a quarter turn, in space two orthogonal vectors. They
+/// jump only where n_z passes −0.9. (A jump at n_z = 0 would do for a unit vector, but everything that moves in the
+/// plane z = 0 is there.) Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
 fn tangents<const D: usize>(n: Point<D>) -> [Point<D>; 2] {
     if D == 2 {
         let along = std::array::from_fn(|k| if k == 0 { -n[1] } else { n[0] });

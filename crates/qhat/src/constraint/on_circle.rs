@@ -1,4 +1,4 @@
-//! OnCircle: a particle on a circle in space, of radius r(t) about a point p(t) or another particle, across an axis.
+//! OnCircle: a particle on a circle in space, of radius r(t), about a point p(t) or another particle, across an axis.
 //!
 //! ```text
 //! d = x − p or x − x_p,   n = d/|d|
@@ -6,14 +6,15 @@
 //! C_1 = |d| − r,   J = nᵀ,    C_t = −n·ṗ − ṙ           (on_sphere.rs)
 //! ```
 //!
-//! Two rows [m], at right angles on the circle; λ are the forces along the axis and outwards [N]. Three dimensions only: in the plane a
-//! circle is OnSphere. Fails in the centre, as OnSphere does, and on the axis, where both rows pull the same way.
+//! Two rows [m], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards [N].
+//! Three dimensions only: in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
+//! where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
 use super::error::ConstraintError;
 use super::on_plane::height;
 use super::on_sphere::{beyond, check_radius};
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, dot, minus};
 use crate::space::ParticleId;
@@ -47,28 +48,22 @@ impl Smooth for OnCircle {
         [Some(self.particle), self.center.particle()].get(i).copied().flatten()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (p, pd) = self.center.at(|| x(1), t);
-        let d = minus(x(0), p);
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (p, pd) = self.center.at(|| at.x(1), at.t);
+        let d = minus(at.x(0), p);
         let (C, rd, n) = if row == 0 {
             let (C, _, axis) = height(std::array::from_fn(|k| N::constant(self.axis[k])), d);
             (C, N::constant(0.0), axis)
         } else {
-            let (r, rd) = self.radius.at(t);
+            let (r, rd) = self.radius.at(at.t);
             let (C, n) = beyond(d, r);
             (C, rd, n)
         };
-        gradient(n);
+        gradient.push(n);
         if self.center.particle().is_some() {
-            gradient(n.map(|g| -g));
+            gradient.push(n.map(|g| -g));
         }
-        (C, -dot(n, pd) - rd)
+        Residual { C, C_t: -dot(n, pd) - rd }
     }
 
     fn scale(&self, _: f64) -> f64 {

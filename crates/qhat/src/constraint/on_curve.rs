@@ -4,18 +4,19 @@
 //!
 //! ```text
 //! in the plane, 1 row [m], the distance with a sign:   n = (−c'_y, c'_x)/|c'|
-//!   C = n·w,   J = nᵀ                                  exactly: w is along n, so neither the turn of n nor the way of the foot counts
+//!   C = n·w,   J = nᵀ                          exact: w is along n, so ṅ and the motion of the foot drop out
 //! in space, 2 rows [m]:   e_k the axes but the one along which c' is longest
-//!   C_k = w_k,   J = e_kᵀ − c'_k (∂s*/∂x)ᵀ             w ⊥ c', so w is zero where two of its components are
+//!   C_k = w_k,   J = e_kᵀ − c'_k (∂s*/∂x)ᵀ     w ⊥ c', so w is zero where two of its components are
 //! ```
 //!
-//! λ is the force of the wire on the particle [N]. γ and the geometric stiffness follow from how J turns with x. In space they leave out
-//! w·c‴, which is zero where the constraint holds. In the plane a spline is exact as well; its c‴ jumps at the given points, which costs a
-//! method of high order some of its order there. The corners of a polyline begin and end with a jump of c" itself (polyline.rs says what that costs).
+//! λ is the force of the wire on the particle [N]. γ and the geometric stiffness follow from the change of J with x.
+//! In space they leave out w·c‴, which is zero where the constraint holds. In the plane a spline is exact as well.
+//! The c‴ of a spline jumps at the given points, which costs a method of high order some of its order there. The
+//! corners of a polyline begin and end with a jump of c" itself (polyline.rs says what that costs).
 
 use super::curve::{Curve, Foot};
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, norm};
 use crate::space::ParticleId;
 
@@ -37,27 +38,21 @@ impl Smooth for OnCurve {
         (i == 0).then_some(self.particle)
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        _: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         let zero = N::constant(0.0);
-        let Foot { w, tangent, slope } = self.curve.foot(x(0));
+        let Foot { w, tangent, slope } = self.curve.foot(at.x(0));
         if D == 2 {
             let length = norm(tangent);
             let mut n = [zero; D];
             (n[0], n[1]) = (-tangent[1] / length, tangent[0] / length);
-            gradient(n);
-            return (dot(n, w), zero);
+            gradient.push(n);
+            return Residual { C: dot(n, w), C_t: zero };
         }
         let size = |k: usize| tangent[k].value().abs();
         let longest = (1..D).fold(0, |most, k| if size(k) > size(most) { k } else { most });
         let k = (longest + 1 + row) % D;
-        gradient(std::array::from_fn(|j| N::constant(if j == k { 1.0 } else { 0.0 }) - tangent[k] * slope[j]));
-        (w[k], zero)
+        gradient.push(std::array::from_fn(|j| N::constant(if j == k { 1.0 } else { 0.0 }) - tangent[k] * slope[j]));
+        Residual { C: w[k], C_t: zero }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -1,18 +1,19 @@
 //! OnLine: a particle on a line, through a point p along u (both may be driven) or through two particles a and b.
 //!
 //! ```text
-//! d = u or x_b − x_a,   w = x − p or x − x_a,   C_k = (d × w)_k/|d|      1 row in the plane, 2 in space [m]   (moment.rs)
+//! d = u or x_b − x_a,   w = x − p or x − x_a
+//! C_k = (d × w)_k/|d|                                       1 row in the plane, 2 in space [m]   (moment.rs)
 //! J = ∂C/∂w on the particle;  ∂C/∂d on b, −∂C/∂w − ∂C/∂d on a
 //! C_t = ∂C/∂d · u̇ − ∂C/∂w · ṗ
 //! ```
 //!
-//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: there is no line, and C is
-//! not a number.
+//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: no line
+//! exists there, and C is NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::error::ConstraintError;
 use super::moment::moment;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, minus, plus};
 use crate::space::ParticleId;
 
@@ -60,26 +61,20 @@ impl Smooth for OnLine {
         }
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         match &self.line {
             Line::Through(point, along) => {
-                let ((p, pd), (u, ud)) = (follow(point, t), follow(along, t));
-                let (C, by_u, by_w) = moment(row, u, minus(x(0), p));
-                gradient(by_w);
-                (C, dot(by_u, ud) - dot(by_w, pd))
+                let ((p, pd), (u, ud)) = (follow(point, at.t), follow(along, at.t));
+                let (C, by_u, by_w) = moment(row, u, minus(at.x(0), p));
+                gradient.push(by_w);
+                Residual { C, C_t: dot(by_u, ud) - dot(by_w, pd) }
             }
             Line::Particles(..) => {
-                let (C, by_d, by_w) = moment(row, minus(x(2), x(1)), minus(x(0), x(1)));
-                gradient(by_w);
-                gradient(plus(by_w, by_d).map(|g| -g));
-                gradient(by_d);
-                (C, N::constant(0.0))
+                let (C, by_d, by_w) = moment(row, minus(at.x(2), at.x(1)), minus(at.x(0), at.x(1)));
+                gradient.push(by_w);
+                gradient.push(plus(by_w, by_d).map(|g| -g));
+                gradient.push(by_d);
+                Residual { C, C_t: N::constant(0.0) }
             }
         }
     }

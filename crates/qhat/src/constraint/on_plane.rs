@@ -1,4 +1,5 @@
-//! OnPlane: a particle on a plane, through a point p across a normal n (both may be driven) or through three particles a, b and c.
+//! OnPlane: a particle on a plane, through a point p across a normal n (both may be driven) or through three
+//! particles a, b, c.
 //!
 //! ```text
 //! w = x − p or x − x_a,   C = n̂ · w,   n̂ = n/|n|      1 row [m]
@@ -7,12 +8,12 @@
 //! g = ∂C/∂n:     ∂C/∂e = f × g,   ∂C/∂f = g × e        −(their sum with n̂) on a
 //! ```
 //!
-//! λ is the force of the plane on the particle [N]. Three dimensions only: in the plane a line is the same. Fails where a, b and c are in
-//! line: there is no plane, and C is not a number.
+//! λ is the force of the plane on the particle [N]. Three dimensions only: in the plane, OnLine does the same. Fails
+//! where a, b and c are in line: no plane exists there, and C is NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, cross, dot, minus, norm, plus, scaled};
 use crate::space::ParticleId;
 
@@ -55,10 +56,6 @@ pub(super) fn height<N: Number, const D: usize>(n: [N; D], w: [N; D]) -> (N, [N;
 }
 
 impl Smooth for OnPlane {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         match (i, &self.plane) {
             (0, _) => Some(self.particle),
@@ -67,29 +64,23 @@ impl Smooth for OnPlane {
         }
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         match &self.plane {
             Plane::Across(point, normal) => {
-                let ((p, pd), (n, nd)) = (follow(point, t), follow(normal, t));
-                let (C, by_n, unit) = height(n, minus(x(0), p));
-                gradient(unit);
-                (C, dot(by_n, nd) - dot(unit, pd))
+                let ((p, pd), (n, nd)) = (follow(point, at.t), follow(normal, at.t));
+                let (C, by_n, unit) = height(n, minus(at.x(0), p));
+                gradient.push(unit);
+                Residual { C, C_t: dot(by_n, nd) - dot(unit, pd) }
             }
             Plane::Particles(_) => {
-                let (e, f) = (minus(x(2), x(1)), minus(x(3), x(1)));
-                let (C, by_n, unit) = height(cross(e, f), minus(x(0), x(1)));
+                let (e, f) = (minus(at.x(2), at.x(1)), minus(at.x(3), at.x(1)));
+                let (C, by_n, unit) = height(cross(e, f), minus(at.x(0), at.x(1)));
                 let (by_e, by_f) = (cross(f, by_n), cross(by_n, e));
-                gradient(unit);
-                gradient(plus(unit, plus(by_e, by_f)).map(|g| -g));
-                gradient(by_e);
-                gradient(by_f);
-                (C, N::constant(0.0))
+                gradient.push(unit);
+                gradient.push(plus(unit, plus(by_e, by_f)).map(|g| -g));
+                gradient.push(by_e);
+                gradient.push(by_f);
+                Residual { C, C_t: N::constant(0.0) }
             }
         }
     }

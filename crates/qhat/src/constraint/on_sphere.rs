@@ -1,19 +1,20 @@
-//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle in the plane, a rod
-//! whose length is driven.
+//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle
+//! in the plane, a rod whose length is driven.
 //!
 //! ```text
 //! d = x − p or x − x_p,   n = d/|d|,   C = |d| − r      1 row [m]
 //! J = nᵀ on the particle, −nᵀ on the other,   C_t = −n·ṗ − ṙ
 //! ```
 //!
-//! λ is the force of the sphere on the particle [N], outwards; of a driven rod the tension is −λ. Distance is the same with a length that
-//! stays: it has the forms, the compliance and the fast ways that need it.
+//! λ is the force of the sphere on the particle [N], outwards; the tension of a driven rod is −λ. Distance is the
+//! same constraint with a fixed length, and has the squared form, the compliance and the fast paths that large
+//! systems need.
 //!
-//! Fails at |d| = 0, where it takes the first axis for n, so that a projection can still pull the two apart.
+//! Fails at |d| = 0, where the first axis takes the place of n, so that a projection can still pull the two apart.
 
 use super::anchor::{Anchor, check_different};
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::positive;
 use crate::driven::Driven;
 use crate::number::{Number, dot, minus, norm, scaled};
@@ -54,29 +55,19 @@ pub(super) fn check_radius(radius: &Driven, what: &'static str) -> Result<(), Co
 }
 
 impl Smooth for OnSphere {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
     fn particle(&self, i: usize) -> Option<ParticleId> {
         [Some(self.particle), self.center.particle()].get(i).copied().flatten()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (p, pd) = self.center.at(|| x(1), t);
-        let (r, rd) = self.radius.at(t);
-        let (C, n) = beyond(minus(x(0), p), r);
-        gradient(n);
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (p, pd) = self.center.at(|| at.x(1), at.t);
+        let (r, rd) = self.radius.at(at.t);
+        let (C, n) = beyond(minus(at.x(0), p), r);
+        gradient.push(n);
         if self.center.particle().is_some() {
-            gradient(n.map(|g| -g));
+            gradient.push(n.map(|g| -g));
         }
-        (C, -dot(n, pd) - rd)
+        Residual { C, C_t: -dot(n, pd) - rd }
     }
 
     fn scale(&self, _: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! A wire of straight pieces with round corners, by its arc length s: |c'| = 1.
+//! Polyline: a wire of straight pieces with round corners, by its arc length s: |c'| = 1.
 //!
 //! ```text
 //! at a corner p the wire comes along e and leaves along f, unit vectors, with the angle θ between them
@@ -8,22 +8,24 @@
 //! it takes r tan(θ/2) of the straight piece on either side:   r (tan(θ_i/2) + tan(θ_{i+1}/2)) ≤ |p_{i+1} − p_i|
 //! ```
 //!
-//! u is the length since the piece began. An arc lies in the plane of its two pieces; out of it o, a and c do not go, so all of this holds in
-//! space as it stands. An open wire goes on straight beyond its ends. The foot of a point is the nearest of its feet on all pieces, each
-//! found in closed form: on a straight one (x − c)·e, on an arc r (atan2((x − m)·a, (x − m)·o) + θ/2), held within the piece.
+//! u is the length since the piece began. An arc lies in the plane of its two pieces, and o, a and c stay in that
+//! plane, so the same formulas hold in space. An open wire goes on straight beyond its ends. The foot of a point is
+//! the nearest of its feet on all pieces, each found in closed form: on a straight piece (x − c)·e, on an arc r
+//! (atan2((x − m)·a, (x − m)·o) + θ/2), held within the piece.
 //!
-//! c and c' are continuous; c" jumps from 0 to 1/r where an arc begins, and with it γ and the force of the wire, as it does on a real one.
-//! An adaptive method must close in on each of these places by rejected and short substeps: `dop853` takes 28 there at a tolerance of 1e-6, 40
-//! at 1e-9. One of fixed steps is of first order there.
+//! c and c' are continuous. c" jumps from 0 to 1/r where an arc begins, and with it γ and the force of the wire, as
+//! on a real wire. An adaptive method must close in on each of these places by rejected and short substeps: `dop853`
+//! takes 28 there at a tolerance of 1e-6, 40 at 1e-9. A method of fixed steps is of first order there.
 
 use crate::allowed::{GeometryError, positive};
 use crate::point::{Point, dot, minus, norm};
 
-/// A corner that comes nearer to folding back than this [rad] is taken to do so: its arc would lie a million radii away from it.
+/// A corner that is nearer to folding back than this [rad] counts as folded: its arc would lie a million radii away.
 const FOLD: f64 = 1e-6;
-/// What the roundings of a corner may take of a straight piece, relative: where two arcs meet it is left with no length.
+/// The excess by which two arcs may overlap on a straight piece, relative to its length. Where the two arcs meet, the
+/// piece has no length but for roundoff.
 const ROUNDING: f64 = 1e-12;
-/// A drawn arc is cut in pieces of 5° at most: 0.1 % of the radius off the arc.
+/// The largest piece of a drawn arc [rad], 5°: the chord is off the arc by 0.1 % of the radius.
 const DRAWN: f64 = std::f64::consts::PI / 36.0;
 
 /// A wire of straight pieces and arcs.
@@ -61,7 +63,7 @@ enum PolylineForm {
     },
 }
 
-/// e, f and what follows from them.
+/// e − f and e + f at one corner.
 struct Corner {
     diff: [f64; 3],
     sum: [f64; 3],
@@ -121,7 +123,7 @@ impl Polyline {
         self.end += length;
     }
 
-    /// Where its parameter ends; it begins at 0.
+    /// The last parameter; the first is 0.
     pub(super) fn end(&self) -> f64 {
         self.end
     }
@@ -206,7 +208,7 @@ fn corner(e: [f64; 3], f: [f64; 3], point: usize) -> Result<Option<Corner>, Geom
 /// `Ok` if every straight piece is long enough for the arcs at its ends.
 fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Result<(), GeometryError> {
     let tangent = |i: usize| corners[i % corners.len()].as_ref().map_or(0.0, |corner| corner.tangent);
-    // Where there is the least room, and the corner there that asks for more of it.
+    // The largest radius that fits, and the corner that needs the most of that piece.
     let mut tightest = (f64::INFINITY, 0);
     for (i, (_, length)) in sides.iter().enumerate() {
         let room = length / (tangent(i) + tangent(i + 1));
@@ -238,8 +240,8 @@ mod tests {
         norm(std::array::from_fn::<f64, 3, _>(|k| a[k][order] - b[k][order]))
     }
 
-    /// Where pieces meet c and c' are the same from both sides, also where a closed wire meets itself; everywhere |c'| = 1, c' and c" are what
-    /// differences say, and c" is 0 or 1/r.
+    /// Where pieces meet c and c' are the same from both sides, also where a closed wire meets itself; everywhere
+    /// |c'| = 1, c' and c" are what differences say, and c" is 0 or 1/r.
     #[test]
     fn pieces_meet_with_one_derivative() {
         for closed in [false, true] {
@@ -266,7 +268,8 @@ mod tests {
         }
     }
 
-    /// Beside the wire and off its arcs' planes no point of the wire is nearer than the foot, and the way there stands at right angles.
+    /// Beside the wire and off its arcs' planes no point of the wire is nearer than the foot, and the way there
+    /// stands at right angles.
     #[test]
     fn the_foot_is_the_nearest_point() {
         for closed in [false, true] {
@@ -288,7 +291,8 @@ mod tests {
         }
     }
 
-    /// No place of the wire is farther from its polygon than an arc is from a chord of 5°, and straight pieces are drawn in one.
+    /// No place of the wire is farther from its polygon than an arc is from a chord of 5°, and straight pieces are
+    /// drawn in one.
     #[test]
     fn what_is_drawn_is_round_and_cuts_no_corner() {
         let wire = Polyline::new(&BENT, 0.3, false).unwrap();

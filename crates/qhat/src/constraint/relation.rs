@@ -1,5 +1,5 @@
-//! Relation: a linear relation between places, Σ w_i x_i = p. One particle in the middle of two others, the centre of mass at a
-//! point, two particles at one place.
+//! Relation: a linear relation between positions, Σ w_i x_i = p. One particle in the middle of two others, the centre
+//! of mass at a point, two particles at one place.
 //!
 //! ```text
 //! C = Σ w_i x_i − p(t)      d rows [m], λ: force on a particle of weight 1 [N]
@@ -7,13 +7,13 @@
 //! ```
 
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::Number;
 use crate::space::ParticleId;
 
-/// A weighted sum of places that is held at a point.
+/// A weighted sum of positions that is held at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relation {
     /// The particles with their weights, each particle once.
@@ -65,20 +65,14 @@ impl Smooth for Relation {
         self.terms.get(i).map(|&(particle, _)| particle)
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
-        let (point, rate) = self.point[row].at(t);
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        let (point, rate) = self.point[row].at(at.t);
         let mut C = -point;
         for (i, &(_, weight)) in self.terms.iter().enumerate() {
-            C = C + x(i)[row].times(weight);
-            gradient(std::array::from_fn(|k| N::constant(if k == row { weight } else { 0.0 })));
+            C = C + at.x(i)[row].times(weight);
+            gradient.push(std::array::from_fn(|k| N::constant(if k == row { weight } else { 0.0 })));
         }
-        (C, -rate)
+        Residual { C, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

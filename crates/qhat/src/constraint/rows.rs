@@ -1,7 +1,8 @@
-//! All constraints together: C, Ċ, γ (m each) and the block-sparse Jacobian J (m × d·n).
+//! Rows: C, Ċ, γ (m each) and the block-sparse Jacobian J (m × d·n) of all constraints together.
 //!
-//! A row of J touches the few particles its constraint names; for each it holds one block of d numbers. Which particles
-//! those are never changes once a System is built, so the layout is made once and only the numbers are written again.
+//! A row of J depends on the few particles of its constraint and holds one block of d numbers for each of them. Which
+//! particles these are never changes once a System is built. The layout is therefore made once, and an evaluation
+//! writes numbers only.
 
 use super::jacobian::{Jacobian, RowWriter};
 use super::layout::Layout;
@@ -14,7 +15,7 @@ pub(crate) struct Rows {
     pub(crate) C: Vec<f64>,
     pub(crate) Cd: Vec<f64>,
     pub(crate) gamma: Vec<f64>,
-    /// ∂C/∂t [C/s]; zero where a constraint does not move with time.
+    /// ∂C/∂t [C/s]; zero where a constraint does not depend on time.
     pub(crate) Ct: Vec<f64>,
     pub(crate) J: Jacobian,
 }
@@ -38,7 +39,7 @@ impl Rows {
     ) {
         let mut writer = RowWriter { rows: self, row: 0, entry: 0 };
         for constraint in constraints {
-            // Large systems are made of rods: one function for every kind costs them a fifth more.
+            // Large systems are made of rods. The match over every kind would cost them a fifth more.
             match constraint.as_rod() {
                 Some(rod) => rod.evaluate(motion, &mut writer),
                 None => constraint.evaluate(motion, &mut writer),
@@ -47,7 +48,7 @@ impl Rows {
         debug_assert_eq!(writer.row, self.C.len());
     }
 
-    /// out = J v + C_t, the Ċ of another velocity; v is d·n, out is m.
+    /// out = J v + C_t, the Ċ of the velocity v; v is d·n, out is m.
     pub(crate) fn rates<const D: usize>(&self, v: &[f64], out: &mut [f64]) {
         self.J.multiply::<D>(v, out);
         for (rate, Ct) in out.iter_mut().zip(&self.Ct) {

@@ -1,4 +1,5 @@
-//! Constraints from C and its gradient alone: everything else follows by carrying a derivative through the same formulas.
+//! Smooth: constraints from C and its gradient alone. Every other derivative follows by carrying one along through
+//! the same formulas.
 //!
 //! ```text
 //! along (q + τ q̇, t + τ):   J ↦ J + J̇ ε,   C_t ↦ C_t + Ċ_t ε
@@ -7,8 +8,8 @@
 //! along coordinate k of particle j:   J_i ↦ J_i + (∂²C/∂x_i ∂x_jk) ε, one column of the geometric stiffness
 //! ```
 //!
-//! So a kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`), and nothing else is
-//! derived by hand.
+//! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`). It
+//! derives nothing else by hand.
 
 use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
@@ -19,10 +20,15 @@ use crate::stiffness::Stiffness;
 
 /// A constraint whose rows are smooth functions of positions and time.
 pub(crate) trait Smooth: Clone {
-    /// Number of scalar rows in d dimensions.
-    fn row_count(&self, dimension: usize) -> usize;
+    /// The only number of dimensions that the kind has a meaning in; `None` where it has one in both.
+    const ONLY_IN: Option<usize> = None;
 
-    /// Whether its rows are the components of a vector.
+    /// Number of scalar rows in d dimensions.
+    fn row_count(&self, _dimension: usize) -> usize {
+        1
+    }
+
+    /// Whether the rows are the components of one vector.
     fn is_vector(&self) -> bool {
         false
     }
@@ -30,50 +36,91 @@ pub(crate) trait Smooth: Clone {
     /// The i-th of the particles it names, each once; `None` after the last.
     fn particle(&self, i: usize) -> Option<ParticleId>;
 
-    /// Hands ∂C/∂x of one row to `gradient`, particle after particle in the order of `particle`, and returns C and C_t. `x` tells
-    /// where the i-th of its particles is.
-    fn row<N: Number, const D: usize>(
-        &self,
-        row: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N);
+    /// C and C_t of one row. Its gradient ∂C/∂x goes to `gradient`, particle after particle in the order of `particle`.
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N>;
 
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// Why it cannot be in d dimensions, in words.
-    fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
-        Ok(())
+    /// Why the constraint has no meaning in d dimensions, in words.
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
     }
 
-    /// What is wrong with its numbers, in words.
+    /// What is wrong with the numbers of the constraint, in words.
     fn check(&self) -> Result<(), ConstraintError>;
+}
+
+/// Where a row is evaluated: the positions of the particles of its constraint [m], and t [s]. Both carry their
+/// derivative along one direction.
+pub(crate) struct At<'a, N, const D: usize> {
+    motion: Motion<'a, D>,
+    particles: &'a [ParticleId],
+    along: Along,
+    pub(super) t: N,
+}
+
+/// The direction along which positions and time carry a derivative.
+enum Along {
+    /// (q̇, 1): the motion itself.
+    Motion,
+    /// Coordinate k of particle j of the constraint, at a fixed time.
+    Coordinate { j: usize, k: usize },
+}
+
+impl<N: Number, const D: usize> At<'_, N, D> {
+    /// x of the i-th particle of the constraint [m].
+    #[inline(always)]
+    pub(super) fn x(&self, i: usize) -> [N; D] {
+        let place = self.motion.x(self.particles[i]);
+        match self.along {
+            Along::Motion => {
+                let velocity = self.motion.v(self.particles[i]);
+                std::array::from_fn(|k| N::of(place[k], velocity[k]))
+            }
+            Along::Coordinate { j, k: moved } => {
+                std::array::from_fn(|k| N::of(place[k], if i == j && k == moved { 1.0 } else { 0.0 }))
+            }
+        }
+    }
+}
+
+/// The receiver of ∂C/∂x [C/m] of one row, one particle after the other.
+pub(crate) struct Gradient<'a, N, const D: usize>(&'a mut dyn FnMut([N; D]));
+
+impl<N, const D: usize> Gradient<'_, N, D> {
+    /// Takes ∂C/∂x of the next particle of the constraint.
+    #[inline(always)]
+    pub(super) fn push(&mut self, block: [N; D]) {
+        (self.0)(block);
+    }
+}
+
+/// C and C_t of one row.
+pub(crate) struct Residual<N> {
+    /// C(q, t) [C].
+    pub(super) C: N,
+    /// ∂C/∂t [C/s], zero where nothing is driven.
+    pub(super) C_t: N,
 }
 
 /// Calls `visit(j, k, i, column)` with ∂²C/∂x_i ∂x_jk of one row.
 fn second_derivatives<S: Smooth, const D: usize>(
     constraint: &S,
+    particles: &[ParticleId],
     row: usize,
     motion: Motion<'_, D>,
     visit: &mut impl FnMut(usize, usize, usize, [f64; D]),
 ) {
-    let particle = |i| constraint.particle(i).expect("one of its particles");
-    for j in (0..).take_while(|&j| constraint.particle(j).is_some()) {
+    for j in 0..particles.len() {
         for k in 0..D {
-            let x = |i: usize| {
-                let mut place = motion.x(particle(i)).map(Dual::constant);
-                if i == j {
-                    place[k].slope = 1.0;
-                }
-                place
-            };
+            let at = At { motion, particles, along: Along::Coordinate { j, k }, t: Dual::constant(motion.t) };
             let mut i = 0;
-            constraint.row::<Dual, D>(row, &x, Dual::constant(motion.t), &mut |gradient| {
+            let mut column = |gradient: [Dual; D]| {
                 visit(j, k, i, gradient.map(|component| component.slope));
                 i += 1;
-            });
+            };
+            constraint.row(row, &at, &mut Gradient(&mut column));
         }
     }
 }
@@ -93,22 +140,20 @@ impl<S: Smooth> Holds for S {
 
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
         for row in 0..Smooth::row_count(self, D) {
-            rows.write_blocks(|particles, write| {
-                let x = |i: usize| {
-                    let (place, velocity) = (motion.x(particles[i]), motion.v(particles[i]));
-                    std::array::from_fn(|k| Dual { value: place[k], slope: velocity[k] })
-                };
+            rows.write_blocks(|particles, blocks| {
+                let at = At { motion, particles, along: Along::Motion, t: Dual { value: motion.t, slope: 1.0 } };
                 let (mut rate, mut gamma, mut i) = (0.0, 0.0, 0);
-                let t = Dual { value: motion.t, slope: 1.0 };
-                let (C, Ct) = self.row::<Dual, D>(row, &x, t, &mut |gradient| {
+                let mut block = |gradient: [Dual; D]| {
                     let v = motion.v(particles[i]);
-                    let block = gradient.map(|component| component.value);
-                    rate += dot(block, v);
+                    let J = gradient.map(|component| component.value);
+                    rate += dot(J, v);
                     gamma += dot(gradient.map(|component| component.slope), v);
-                    write(block);
+                    blocks[i * D..][..D].copy_from_slice(&J);
                     i += 1;
-                });
-                [C.value, rate + Ct.value, gamma + Ct.slope, Ct.value]
+                };
+                let Residual { C, C_t } = self.row(row, &at, &mut Gradient(&mut block));
+                debug_assert_eq!(i, particles.len(), "a block for each particle");
+                [C.value, rate + C_t.value, gamma + C_t.slope, C_t.value]
             });
         }
     }
@@ -118,11 +163,12 @@ impl<S: Smooth> Holds for S {
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
+        let particles = Holds::particles(self);
         let mut largest = 0.0_f64;
         for row in 0..Smooth::row_count(self, D) {
             // The largest sum over a column bounds the norm.
             let (mut sum, mut last) = (0.0, (0, 0));
-            second_derivatives(self, row, motion, &mut |j, k, _, column| {
+            second_derivatives(self, &particles, row, motion, &mut |j, k, _, column| {
                 if (j, k) != last {
                     (sum, last) = (0.0, (j, k));
                 }
@@ -139,8 +185,9 @@ impl<S: Smooth> Holds for S {
         lambda: &[f64],
         visit: &mut impl FnMut(usize, usize, Stiffness<D>),
     ) {
+        let particles = Holds::particles(self);
         for (row, multiplier) in lambda.iter().enumerate() {
-            second_derivatives(self, row, motion, &mut |j, k, i, column| {
+            second_derivatives(self, &particles, row, motion, &mut |j, k, i, column| {
                 if i <= j {
                     let mut block: Block<D> = zero();
                     for (line, entry) in block.iter_mut().zip(column) {

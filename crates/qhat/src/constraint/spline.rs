@@ -1,4 +1,4 @@
-//! The smooth curve through given points: a cubic in each piece, with c, c' and c" continuous.
+//! Spline: the smooth curve through given points, a cubic in each piece, with c, c' and c" continuous.
 //!
 //! ```text
 //! knots s_i: the length of the straight ways up to point i,   h_i = s_{i+1} − s_i,   u = s − s_i
@@ -6,9 +6,9 @@
 //! h_{i−1} m_{i−1} + 2 (h_{i−1} + h_i) m_i + h_i m_{i+1} = 6 ((p_{i+1} − p_i)/h_i − (p_i − p_{i−1})/h_{i−1})
 //! ```
 //!
-//! m_i = c"(s_i). An open curve has m = 0 at both ends and goes on straight beyond them; a closed one comes back to its first point. The closed
-//! system has two more corners β; it is solved with their product taken out (Sherman and Morrison). Source: de Boor, A Practical Guide to
-//! Splines, chapter IV.
+//! m_i = c"(s_i). An open curve has m = 0 at both ends and goes on straight beyond them; a closed curve returns to
+//! its first point. The closed system has two more corners β; it is solved with their product taken out (Sherman and
+//! Morrison). Source: de Boor, A Practical Guide to Splines, chapter IV.
 
 use crate::allowed::GeometryError;
 
@@ -23,7 +23,7 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Through points [m] no two neighbours of which are the same, two or more; a closed one through three or more.
+    /// Through two points [m] or more, three or more of a closed spline, no two neighbours the same.
     pub(super) fn new(points: &[[f64; 3]], closed: bool) -> Result<Self, GeometryError> {
         let mut points = points.to_vec();
         let least = if closed { 3 } else { 2 };
@@ -48,7 +48,7 @@ impl Spline {
         Ok(spline)
     }
 
-    /// Where its parameter ends; it begins at 0.
+    /// The last parameter; the first is 0.
     pub(super) fn end(&self) -> f64 {
         self.knots[self.knots.len() - 1]
     }
@@ -130,7 +130,8 @@ fn solve(diagonal: &[f64], beside: &[f64], right: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// At every knot: the point itself, and c, c' and c" the same from both sides, also where a closed curve meets itself.
+    /// At every knot: the point itself, and c, c' and c" the same from both sides, also where a closed curve meets
+    /// itself.
     #[test]
     fn pieces_meet_with_two_derivatives() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [1.5, 2.0, -0.3], [0.2, 1.6, 0.1], [-0.8, 0.9, 0.5]];

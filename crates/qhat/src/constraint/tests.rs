@@ -1,11 +1,13 @@
-//! Every kind that is made from its residual and gradient: its rows against differences, and against the same typed as an expression.
+//! Every kind that is made from its residual, with or without its gradient: its rows against differences, and against
+//! the same typed as an expression.
 
 use super::{
-    Anchor, Constraint, Curve, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane,
-    Relation, Rows,
+    Anchor, Constraint, Curve, Custom, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere,
+    Plane, Relation, Rows,
 };
 use crate::driven::Driven;
 use crate::expression::{Expression, Purpose, Scope};
+use crate::hyper::Hyper;
 use crate::point::Motion;
 use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
@@ -74,7 +76,8 @@ fn cases() -> Vec<Case> {
             3,
             OnPlane { particle: P, plane: Plane::Across(point(), turning()) }.into(),
             vec![
-                "dot([cos(3*t), sin(3*t), 0.2 + t], p - [sin(t), 2*t, 0.3 - t^2])/length([cos(3*t), sin(3*t), 0.2 + t])",
+                "dot([cos(3*t), sin(3*t), 0.2 + t], p - [sin(t), 2*t, 0.3 - t^2])\
+                 /length([cos(3*t), sin(3*t), 0.2 + t])",
             ],
         ),
         (
@@ -101,6 +104,22 @@ fn cases() -> Vec<Case> {
             2,
             OnCurve { particle: P, curve: Curve::parametric(wave.to_vec(), -3.0, 3.0).unwrap() }.into(),
             vec![],
+        ),
+        (
+            "custom",
+            2,
+            Custom::new([P, A], |x: &[[Hyper; 3]], t: Hyper| (x[0][0] - x[1][0]).hypot(x[0][1] - x[1][1] * t.exp()))
+                .into(),
+            vec!["sqrt((p.x - a.x)^2 + (p.y - a.y*exp(t))^2)"],
+        ),
+        (
+            "custom in space",
+            3,
+            Custom::new([B, P, A], |x: &[[Hyper; 3]], t: Hyper| {
+                (x[0][2] * x[1][0]).sin() + x[2][1] * (t - x[1][1]) + x[0][0].powi(3) * x[2][2]
+            })
+            .into(),
+            vec!["sin(b.z*p.x) + a.y*(t - p.y) + b.x^3*a.z"],
         ),
     ]
 }
@@ -149,7 +168,8 @@ fn close(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// Central differences over ±1e-5: good to h² f‴/6, 2e-11 times a third derivative of some hundreds, and to ε/h = 1e-11. Expressions hold most of these rows much closer.
+/// Central differences over ±1e-5 are good to h² f‴/6, 2e-11 times a third derivative of some hundreds, and to ε/h =
+/// 1e-11. Expressions hold most of these rows much closer.
 const H: f64 = 1e-5;
 const GOOD: f64 = 3e-7;
 

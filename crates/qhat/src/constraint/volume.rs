@@ -1,4 +1,4 @@
-//! Volume: a tetrahedron, or any closed surface of triangles, keeps its volume, or one that follows a schedule V(t). In space.
+//! Volume: a tetrahedron, or any closed surface of triangles, keeps its volume V(t), which may be driven. In space.
 //!
 //! ```text
 //! a, b, c   the corners of each face, counted from x_0
@@ -7,12 +7,13 @@
 //! C_t = −V̇
 //! ```
 //!
-//! Positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed, each side between two faces
-//! that run along it in opposite directions: then neither C nor its gradient depends on the point places are counted from. Fails
-//! where all corners lie in one line or place: the gradient vanishes.
+//! V is positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed:
+//! each side belongs to two faces that run along it in opposite directions. Then neither C nor its gradient depends
+//! on the point that positions count from. Fails where all corners lie in one line or place, because the gradient
+//! vanishes there.
 
 use super::error::ConstraintError;
-use super::smooth::Smooth;
+use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, minus, plus, raised};
 use crate::space::ParticleId;
@@ -23,9 +24,9 @@ use std::collections::HashSet;
 pub struct Volume {
     /// The corners of the surface, each once.
     particles: Vec<ParticleId>,
-    /// The corners of each face, counting `particles`.
+    /// The corners of each face, as places in `particles`.
     faces: Vec<[usize; 3]>,
-    /// The other two corners of the faces at each particle, in their order.
+    /// The other two corners of each face at each particle, in their order.
     around: Vec<Vec<[usize; 2]>>,
     volume: Driven,
 }
@@ -59,29 +60,17 @@ impl Volume {
 }
 
 impl Smooth for Volume {
-    fn row_count(&self, _: usize) -> usize {
-        1
-    }
-
-    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
-        super::error::only_in(3, dimension)
-    }
+    const ONLY_IN: Option<usize> = Some(3);
 
     fn particle(&self, i: usize) -> Option<ParticleId> {
         self.particles.get(i).copied()
     }
 
-    fn row<N: Number, const D: usize>(
-        &self,
-        _: usize,
-        x: &impl Fn(usize) -> [N; D],
-        t: N,
-        gradient: &mut impl FnMut([N; D]),
-    ) -> (N, N) {
+    fn row<N: Number, const D: usize>(&self, _: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         const SIXTH: f64 = 1.0 / 6.0;
-        let (volume, rate) = self.volume.at(t);
-        let origin = x(0);
-        let place = |i: usize| raised(minus(x(i), origin));
+        let (volume, rate) = self.volume.at(at.t);
+        let origin = at.x(0);
+        let place = |i: usize| raised(minus(at.x(i), origin));
         let mut six_fold = N::constant(0.0);
         for &[a, b, c] in &self.faces {
             six_fold = six_fold + dot(place(a), cross(place(b), place(c)));
@@ -91,9 +80,9 @@ impl Smooth for Volume {
             for &[b, c] in faces {
                 sum = plus(sum, cross(place(b), place(c)));
             }
-            gradient(std::array::from_fn(|k| sum[k].times(SIXTH)));
+            gradient.push(std::array::from_fn(|k| sum[k].times(SIXTH)));
         }
-        (six_fold.times(SIXTH) - volume, -rate)
+        Residual { C: six_fold.times(SIXTH) - volume, C_t: -rate }
     }
 
     fn scale(&self, extent: f64) -> f64 {

@@ -1,19 +1,24 @@
-//! What touches as one linear complementarity problem, for where pivoting on modes goes round in circles.
+//! The touching contacts as one linear complementarity problem, for problems on which pivoting on modes goes in
+//! circles.
 //!
-//! With the rows of everything else eliminated, w = S λ + p over the rows of what touch_distance, S = A_TT − A_TB A_BB⁻¹ A_BT. The cone of
-//! friction becomes a pyramid with edges e_k, so that λ_t = Σ β_k e_k, β ≥ 0:
+//! With all other rows eliminated, w = S λ + p over the rows of touching contacts, S = A_TT − A_TB A_BB⁻¹ A_BT. The
+//! cone of friction becomes a pyramid with edges e_i, so that λ_t = Σ β_i e_i, β ≥ 0:
 //!
 //! ```text
 //! normal      w_n ≥ 0                   ⟂   λ_n ≥ 0
-//! edge k      e_k·w_t + σ ≥ 0           ⟂   β_k ≥ 0
-//! pyramid     μ λ_n − Σ β_k ≥ 0         ⟂   σ ≥ 0            σ: the speed of slip
+//! edge i      e_i·w_t + σ ≥ 0           ⟂   β_i ≥ 0
+//! pyramid     μ λ_n − Σ β_i ≥ 0         ⟂   σ ≥ 0            σ: the speed of slip
 //! ```
 //!
-//! What slips and may not stick has one unknown, λ_n, with λ_t = −μ λ_n d. From the answer the modes are read, and judged with the round
-//! cone like any others. In the plane the pyramid is the cone; in space it has eight edges, the first along the slip.
+//! A contact that slips and may not stick has one unknown, λ_n, with λ_t = −μ λ_n d. The modes are read from the
+//! solution, and then judged with the round cone like any others. In the plane the pyramid is the cone; in space it
+//! has eight edges, the first along the slip.
+//!
+//! Letters: T touching rows, B all other active rows, k a touching contact, i and j unknowns of the problem M x + q.
 //! Source: Stewart, Trinkle, An Implicit Time-Stepping Scheme for Rigid Body Dynamics with Coulomb Friction (1996).
 
 use super::Touching;
+use super::complementarity::{size, w};
 use super::lemke::lemke;
 use crate::modes::{Mode, Modes};
 use crate::multiplier::{Equation, SolveFor};
@@ -22,22 +27,24 @@ use crate::system::System;
 /// cos 45°.
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Forces below this part of the largest are none.
+/// Part of the largest force below which a force counts as zero.
 const ROUNDOFF: f64 = 1e-12;
 
-/// Friction within this part of its limit is at it: x is good to some 1e-12.
+/// Friction within this part of its limit counts as at it: x is good to some 1e-12.
 const AT_LIMIT: f64 = 1e-10;
 
-/// One unknown but σ, in the normal and up to two tangential rows of a contact: where its row of the problem looks, and what one of it
-/// pushes.
+/// An unknown of the problem other than σ, in the normal and up to two tangential rows of a contact.
 struct Unknown {
-    touching: usize,
-    looks: [f64; 3],
-    pushes: [f64; 3],
+    /// k, the number of its contact among those that touch.
+    k: usize,
+    /// The combination of w that is complementary to it.
+    tests: [f64; 3],
+    /// λ for one unit of it.
+    lambda: [f64; 3],
 }
 
-/// Modes for what touch_distance, from Lemke's method; `None` if that finds none. The right side is that in `equation.b.sum`, the rows must
-/// have been evaluated.
+/// Modes for the touching contacts, from Lemke's method; `None` if it finds none. The right-hand side is that in
+/// `equation.b.sum`, the rows must have been evaluated.
 pub(super) fn propose<const D: usize>(
     equation: &mut Equation,
     system: &System,
@@ -47,85 +54,88 @@ pub(super) fn propose<const D: usize>(
     let contacts: Vec<_> = touching.iter().map(|touching| &system.contacts.list[touching.contact]).collect();
     let rows: Vec<usize> =
         contacts.iter().flat_map(|contact| std::iter::once(contact.normal).chain(contact.tangents.clone())).collect();
-    let mut first = vec![0];
+    let mut first = vec![0]; // of each contact, its first row in S
     contacts.iter().for_each(|contact| first.push(first[first.len() - 1] + 1 + contact.tangents.len()));
     let mut proposed = modes.clone();
     touching.iter().for_each(|touching| proposed.contacts[touching.contact] = Mode::Open);
     equation.set_modes(system, &proposed);
-    equation.factor::<D>(system, 0.0);
-    let p = parting::<D>(equation, system, &rows);
+    equation.factor::<D>(system, 0.0); // A_BB
+    let p = separation::<D>(equation, system, &rows);
     let S: Vec<Vec<f64>> = rows.iter().map(|&row| compliance::<D>(equation, system, row, &rows)).collect();
 
+    // The unknowns: λ_n of each contact, then its β_i; and the σ of each pyramid with the places of its λ_n and β_i.
     let mut unknowns = Vec::new();
-    let mut slips = Vec::new();
+    let mut pyramids = Vec::new();
     for (k, (contact, &Touching { slip, may_stick, .. })) in contacts.iter().zip(touching).enumerate() {
-        let normal = |[a, b]: [f64; 2]| Unknown { touching: k, looks: [1.0, 0.0, 0.0], pushes: [1.0, a, b] };
+        let normal = |[a, b]: [f64; 2]| Unknown { k, tests: [1.0, 0.0, 0.0], lambda: [1.0, a, b] };
         if let Some(d) = slip.filter(|_| !may_stick) {
-            unknowns.push(normal(d.map(|d| -contact.friction * d)));
+            unknowns.push(normal(d.map(|d| -contact.friction * d))); // λ_t = −μ λ_n d
             continue;
         }
         unknowns.push(normal([0.0; 2]));
         let edges = edges(contact.tangents.len(), slip.unwrap_or([1.0, 0.0]));
         if !edges.is_empty() {
-            slips.push((k, unknowns.len() - 1, unknowns.len()..unknowns.len() + edges.len()));
+            pyramids.push((k, unknowns.len() - 1, unknowns.len()..unknowns.len() + edges.len()));
         }
-        let along = |[a, b]: [f64; 2]| Unknown { touching: k, looks: [0.0, a, b], pushes: [0.0, a, b] };
-        unknowns.extend(edges.into_iter().map(along));
+        let edge = |[a, b]: [f64; 2]| Unknown { k, tests: [0.0, a, b], lambda: [0.0, a, b] };
+        unknowns.extend(edges.into_iter().map(edge));
     }
-    // Rows and unknowns of a contact are scaled alike, to a unit diagonal of its normal: what is heavy counts as what is light.
+    // Rows and unknowns of a contact are scaled alike, to a unit diagonal of its normal: so heavy contacts count as
+    // light.
     let scale = |k: usize| 1.0 / S[first[k]][first[k]].sqrt();
-    let n = unknowns.len() + slips.len();
+    let n = unknowns.len() + pyramids.len();
     let (mut M, mut q) = (vec![0.0; n * n], vec![0.0; n]);
     for (i, unknown) in unknowns.iter().enumerate() {
-        let a = unknown.touching;
+        let a = unknown.k;
         for row in 0..first[a + 1] - first[a] {
-            let looks = scale(a) * unknown.looks[row];
-            q[i] += looks * p[first[a] + row];
+            let tests = scale(a) * unknown.tests[row];
+            q[i] += tests * p[first[a] + row]; // q = tests · p
             for (j, other) in unknowns.iter().enumerate() {
-                let b = other.touching;
-                let pushed = (0..first[b + 1] - first[b])
-                    .map(|column| S[first[b] + column][first[a] + row] * other.pushes[column]);
-                M[i * n + j] += looks * scale(b) * pushed.sum::<f64>();
+                let b = other.k;
+                let w = (0..first[b + 1] - first[b])
+                    .map(|column| S[first[b] + column][first[a] + row] * other.lambda[column]);
+                M[i * n + j] += tests * scale(b) * w.sum::<f64>(); // M = tests · S λ
             }
         }
     }
-    for (s, (k, normal, edges)) in slips.iter().enumerate() {
-        let sigma = unknowns.len() + s;
-        M[sigma * n + normal] = contacts[*k].friction;
+    for (number, (k, normal, edges)) in pyramids.iter().enumerate() {
+        let sigma = unknowns.len() + number;
+        M[sigma * n + normal] = contacts[*k].friction; // μ λ_n
         for edge in edges.clone() {
-            M[edge * n + sigma] = 1.0;
-            M[sigma * n + edge] = -1.0;
+            M[edge * n + sigma] = 1.0; // e_i·w_t + σ
+            M[sigma * n + edge] = -1.0; // − Σ β_i
         }
     }
     let x = lemke(&M, &q)?;
 
-    let none = ROUNDOFF * x[..unknowns.len()].iter().fold(0.0_f64, |most, force| most.max(*force));
-    for (unknown, _) in unknowns.iter().zip(&x).filter(|&(unknown, force)| unknown.looks[0] > 0.0 && *force > none) {
-        let Touching { contact, slip, may_stick } = touching[unknown.touching];
+    // λ_n > 0: the contact is closed.
+    let zero = ROUNDOFF * x[..unknowns.len()].iter().fold(0.0_f64, |most, force| most.max(*force));
+    for (unknown, _) in unknowns.iter().zip(&x).filter(|&(unknown, force)| unknown.tests[0] > 0.0 && *force > zero) {
+        let Touching { contact, slip, may_stick } = touching[unknown.k];
         proposed.contacts[contact] = match slip.filter(|_| !may_stick) {
-            Some(d) => Mode::Sliding(d),
-            None if contacts[unknown.touching].tangents.is_empty() => Mode::Smooth,
+            Some(d) => Mode::sliding(d),
+            None if contacts[unknown.k].tangents.is_empty() => Mode::Smooth,
             None => Mode::Sticking,
         };
     }
-    // Friction at its limit follows the normal force, even where nothing slips: so the rows that are left are independent, where many
-    // contacts hold what few would.
-    for (k, normal, edges) in slips {
-        let push = x[edges.clone()].iter().zip(&unknowns[edges.clone()]);
-        let push =
-            push.fold([0.0; 2], |[a, b], (force, edge)| [a + force * edge.pushes[1], b + force * edge.pushes[2]]);
+    // Σ β_i = μ λ_n: friction at its limit follows the normal force, even where there is no slip. So the remaining
+    // rows are independent where many contacts hold what few would.
+    for (k, normal, edges) in pyramids {
+        let beta = x[edges.clone()].iter().zip(&unknowns[edges.clone()]);
+        let lambda_t =
+            beta.fold([0.0; 2], |[a, b], (beta, edge)| [a + beta * edge.lambda[1], b + beta * edge.lambda[2]]);
         let limit = contacts[k].friction * x[normal];
         let is_at_limit = x[edges].iter().sum::<f64>() >= (1.0 - AT_LIMIT) * limit;
-        let size = super::complementarity::size(push);
+        let size = size(lambda_t);
         let mode = &mut proposed.contacts[touching[k].contact];
         if mode.is_closed() && is_at_limit && size > 0.0 {
-            *mode = Mode::Sliding(push.map(|component| -component / size));
+            *mode = Mode::sliding(lambda_t.map(|component| -component / size));
         }
     }
     Some(proposed)
 }
 
-/// The edges of the pyramid: two in the plane, eight in space, the first along d.
+/// e_i: two in the plane, eight in space, the first along d.
 fn edges(tangents: usize, [a, b]: [f64; 2]) -> Vec<[f64; 2]> {
     match tangents {
         0 => Vec::new(),
@@ -138,22 +148,22 @@ fn edges(tangents: usize, [a, b]: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// p: w of rows with nothing that touches.
-fn parting<const D: usize>(equation: &mut Equation, system: &System, rows: &[usize]) -> Vec<f64> {
+/// p: w of rows while every touching contact is open.
+fn separation<const D: usize>(equation: &mut Equation, system: &System, rows: &[usize]) -> Vec<f64> {
     equation.solve_multipliers::<D>(system, SolveFor::Force);
-    equation.write_push::<D>(system);
-    rows.iter().map(|&row| equation.push_along::<D>(row) - equation.b.sum[row]).collect()
+    equation.write_W_JT_lambda_F::<D>(system);
+    rows.iter().map(|&row| w::<D>(equation, row)).collect()
 }
 
-/// A column of S: what a push of 1 in one row does to others, while all that does not touch holds.
+/// A column of S: J W Jᵀλ in the given rows for λ = 1 in one row, while all rows of B hold.
 fn compliance<const D: usize>(equation: &mut Equation, system: &System, row: usize, rows: &[usize]) -> Vec<f64> {
     equation.lambda.fill(0.0);
     equation.lambda[row] = 1.0;
-    equation.write_impulse::<D>(system);
-    let target: Vec<f64> = (0..system.row_count()).map(|row| -equation.push_along::<D>(row)).collect();
+    equation.write_W_JT_lambda::<D>(system);
+    let target: Vec<f64> = (0..system.row_count()).map(|row| -equation.J_W_JT_lambda::<D>(row)).collect();
     let Equation { solver, lambda, .. } = &mut *equation;
     solver.solve(&system.matrix, &target, SolveFor::Force, lambda);
     lambda[row] += 1.0;
-    equation.write_impulse::<D>(system);
-    rows.iter().map(|&row| equation.push_along::<D>(row)).collect()
+    equation.write_W_JT_lambda::<D>(system);
+    rows.iter().map(|&row| equation.J_W_JT_lambda::<D>(row)).collect()
 }

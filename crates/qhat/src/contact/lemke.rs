@@ -4,27 +4,31 @@
 //! w = M x + q ≥ 0,   x ≥ 0,   xᵀ w = 0
 //! ```
 //!
-//! One more unknown, x₀, is added to every row, large enough that w ≥ 0 with x = 0. From there it goes along the edges on which one pair
-//! has both of its numbers zero, entering the partner of what has just left, until x₀ leaves: the answer; or until nothing
-//! can leave: there is none, for every M that is copositive plus (contacts with Coulomb friction at the level of impulses are).
-//! Ties are broken by the lexicographic rule, so no vertex is met twice. Sources: Lemke, Bimatrix Equilibrium Points
-//! and Mathematical Programming (1965); Anitescu, Potra, Formulating Dynamic Multi-Rigid-Body Contact Problems (1997).
+//! One more unknown, x₀, is added to every row, large enough that w ≥ 0 with x = 0. From there the method goes along
+//! edges on which one pair (w_i, x_i) has both numbers zero: the partner of the variable that left the basis enters
+//! it. If x₀ leaves, x is a solution. If no variable can leave, there is none, for every M that is copositive plus
+//! (impulses of contacts with Coulomb friction give such an M). Ties are broken by the lexicographic rule, so no
+//! vertex is met twice.
+//!
+//! The table holds w − M x − x₀ = q: columns 0..n are w, n..2n are x, then x₀ and the right-hand side.
+//! Sources: Lemke, Bimatrix Equilibrium Points and Mathematical Programming (1965); Anitescu, Potra, Formulating
+//! Dynamic Multi-Rigid-Body Contact Problems (1997).
 
 use std::cmp::Ordering;
 
-/// Unknowns above which it is not tried: the table has their number squared, twice, and about as many pivots are made.
+/// Number of unknowns above which the method is not tried: the table has 2 n² numbers, and about n pivots are made.
 const LARGEST: usize = 600;
 
-/// A pivot below this part of the largest number of its column is roundoff.
+/// Part of the largest number of its column below which a pivot counts as roundoff.
 const TINY: f64 = 1e-10;
 
-/// Right sides below this part of the largest of q are none.
+/// Part of the largest of q below which a right-hand side counts as zero.
 const ROUNDOFF: f64 = 1e-12;
 
-/// Pivots for each unknown: what ends at all ends in about one.
+/// Pivots for each unknown: problems that end at all take about one.
 const PIVOTS: usize = 20;
 
-/// x for M, row after row, and q; `None` if none was found.
+/// x for M, row after row, and q; `None` if no solution was found.
 pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<Vec<f64>> {
     let n = q.len();
     if q.iter().all(|&q| q >= 0.0) {
@@ -34,20 +38,19 @@ pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<Vec<f64>> {
         return None;
     }
     let size = q.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
-    // Columns: w, x, x₀, the right side.
     let (extra, right) = (2 * n, 2 * n + 1);
     let mut table: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let mut row = vec![0.0; 2 * n + 2];
-            row[i] = 1.0;
-            (0..n).for_each(|j| row[n + j] = -M[i * n + j]);
-            (row[extra], row[right]) = (-1.0, snapped(q[i] / size));
+            row[i] = 1.0; // w
+            (0..n).for_each(|j| row[n + j] = -M[i * n + j]); // − M x
+            (row[extra], row[right]) = (-1.0, snapped(q[i] / size)); // − x₀ = q
             row
         })
         .collect();
     let mut basis: Vec<usize> = (0..n).collect();
     let mut row = (0..n).fold(0, |least, i| if q[i] < q[least] { i } else { least });
-    let mut entering = extra;
+    let mut entering = extra; // x₀, in the row of the least q
     for _ in 0..PIVOTS * (n + 1) {
         pivot(&mut table, row, entering);
         let left = std::mem::replace(&mut basis[row], entering);
@@ -58,13 +61,14 @@ pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<Vec<f64>> {
             }
             return Some(x);
         }
-        entering = (left + n) % (2 * n);
+        entering = (left + n) % (2 * n); // its partner: x_i of w_i, w_i of x_i
         row = leaving(&table, &basis, entering)?;
     }
     None
 }
 
-/// The row whose ratio of right side to entering column is least; of equal ones x₀'s, then the lexicographically least.
+/// The row whose ratio of right-hand side to entering column is least; of equal ones that of x₀, then the
+/// lexicographically least.
 fn leaving(table: &[Vec<f64>], basis: &[usize], entering: usize) -> Option<usize> {
     let n = table.len();
     let (extra, right) = (2 * n, 2 * n + 1);
@@ -104,7 +108,7 @@ fn pivot(table: &mut [Vec<f64>], row: usize, entering: usize) {
     table[row] = chosen;
 }
 
-/// What is zero but for roundoff is zero: ties are then ties.
+/// A right-hand side that is zero to roundoff becomes zero, so that ties are ties.
 fn snapped(right: f64) -> f64 {
     if right.abs() < ROUNDOFF { 0.0 } else { right }
 }
@@ -114,9 +118,9 @@ mod tests {
     use super::super::tests::Random;
     use super::lemke;
 
-    /// Bᵀ B of rank r: every such problem has an answer where q = Bᵀ y + s, s ≥ 0.
+    /// M = Bᵀ B of rank r: every such problem has a solution for q = Bᵀ y + s, s ≥ 0.
     #[test]
-    fn answers_are_complementary_also_for_singular_matrices() {
+    fn solutions_are_complementary_also_for_singular_matrices() {
         for seed in 0..500 {
             let n = 1 + seed as usize % 12;
             let r = n - seed as usize % 3 % n;
@@ -143,7 +147,7 @@ mod tests {
 
     /// w = −x − 1 is never positive.
     #[test]
-    fn what_has_no_answer_ends() {
+    fn a_problem_without_a_solution_ends() {
         assert_eq!(lemke(&[-1.0], &[-1.0]), None);
         assert_eq!(lemke(&[0.0, 1.0, -1.0, 0.0], &[-1.0, -1.0]), None);
     }

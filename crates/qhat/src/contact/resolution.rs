@@ -1,58 +1,43 @@
-//! What follows an event: what breaks, the impact, and the modes in which it goes on.
+//! Resolution of an event: the constraint that breaks, the impact, the modes in which the motion goes on, and the
+//! events for the report.
 //!
-//! Two contacts of one body may hit in turn for ever, each impact too rest_speed to matter (a rocking block, two ropes). So a parting so rest_speed
-//! that the flight would not last is none: what the forces would close again is held at once. That takes energy and never gives any:
-//! q̇ is projected in the mass metric.
+//! Two contacts of one body may hit in turn for ever, each impact too slow to matter (a rocking block, two ropes). So
+//! if contacts separate so slowly that the applied forces would close them again within the rest time, the separation
+//! is suppressed: the contact stays closed, and the remaining velocity is projected out in the mass metric. This can
+//! only remove energy.
 
 use super::complementarity::{along, size};
-use super::{EventCause, NoConsistentModes, SAME_WAY, Touching, collide, hold, settle, shock};
+use super::rest::{RestThresholds, rest_speed};
+use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::Motion;
+use crate::report::{Event, EventKind};
 use crate::settings::Feedback;
+use crate::structure::Contacts;
 use crate::system::System;
 
-/// What parts slowly is held, which may push something else to close in; more rounds than this are a chain without an end.
+/// Rounds of one resolution. Holding one contact may make another close; more rounds than this are a chain without an
+/// end.
 const ROUNDS: usize = 100;
 
-/// Where a slip ceases along its direction, what is left of it across, in space, is none if it is this many times slower than what counts
-/// as none: at so rest_speed a slip the direction is that in which it is pulled.
+/// 3D only. When the slip along its old direction reaches zero, the transverse remainder is treated as zero if it is
+/// below `STOPS` × the rest speed. At that speed the force decides the direction, not the slip.
 const STOPS: f64 = 1000.0;
 
-/// τ of a shock, in frames: a time in which nothing else happens.
+/// τ of a shock (`impact.rs`), in frames: a time in which nothing else happens.
 const SHOCK: f64 = 1e-3;
 
-/// What is open and nearer than this many tolerances touch_distance: twice what a margin may be off at its event.
-pub(crate) const TOUCH_DISTANCE: f64 = 2.0;
-
-/// By what a resolved measures.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RestThresholds {
-    /// What is open and nearer than this, relative to the row's scale, touches.
-    pub(crate) touch_distance: f64,
-    /// A flight shorter than this is none [s]: such an impact gives nothing back. `None`: no impact does.
-    pub(crate) shortest_flight: Option<f64>,
-    /// The length of a frame [s].
-    pub(crate) frame: f64,
-}
-
-/// A slip or approach slower than this is none [m/s]: a billionth of the fastest particle, or of what the applied forces do to the
-/// velocity in one frame, so that what rests is at rest.
-pub(crate) fn rest_speed(qd: &[f64], WQ: &[f64], frame: f64) -> f64 {
-    let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    1e-9 * largest(qd).max(frame * largest(WQ))
-}
-
-/// What happened.
+/// The report of a resolution.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Resolved {
     /// Kinetic energy lost in impacts [J].
     pub(crate) lost: f64,
-    /// Contacts that closed in faster than what rests, and how fast [m/s].
-    pub(crate) impacts: Vec<(usize, f64)>,
+    /// Impacts, in which a contact closed faster than the bounce speed; then the changes of modes.
+    pub(crate) events: Vec<Event>,
 }
 
-/// A system at the resolution of an event.
+/// A system at the time of an event.
 pub(crate) struct EventResolution<'a, const D: usize> {
     pub(crate) equation: &'a mut Equation,
     pub(crate) system: &'a System,
@@ -63,14 +48,16 @@ pub(crate) struct EventResolution<'a, const D: usize> {
 }
 
 impl<const D: usize> EventResolution<'_, D> {
-    /// Decides the modes, and changes q̇ where there is an impact. Leaves rows and forces evaluated, and A factored for the modes.
+    /// Decides the modes, and changes q̇ where there is an impact. Leaves rows and forces evaluated, and A factored
+    /// for the modes.
     pub(crate) fn resolve(
         &mut self,
         modes: &mut Modes,
         cause: Option<EventCause>,
     ) -> Result<Resolved, NoConsistentModes> {
         let mut resolved = Resolved::default();
-        let slips = self.slips(cause);
+        let at_first = modes.clone();
+        let next_slip = self.next_slip(cause);
         if let Some(EventCause::Break(breakable)) = cause {
             modes.broken[breakable] = true;
         }
@@ -78,46 +65,51 @@ impl<const D: usize> EventResolution<'_, D> {
         for round in 0..ROUNDS {
             self.evaluate();
             let near = self.near(modes, cause);
-            let hits = self.hits(modes, &near);
-            if !hits.is_empty() {
-                self.collide(modes, &near, &hits, &mut resolved)?;
+            let closing = self.closing(modes, &near);
+            if !closing.is_empty() {
+                self.collide(modes, &near, &closing, &mut resolved)?;
                 self.evaluate();
             }
-            let stops = cause.filter(|_| round == 0);
-            let asked = self.ask(modes, near, hits.is_empty(), stops);
+            let stopping = cause.filter(|_| round == 0);
+            let touching = self.open_separating(modes, near, closing.is_empty(), stopping);
             if round == 0 {
-                self.turn(modes, cause, slips);
+                self.apply(cause, next_slip, modes);
             }
             let before = modes.clone();
-            if self.settle(modes, &asked).is_err() {
+            if self.settle(modes, &touching).is_err() {
                 *modes = before;
-                resolved.lost += self.shock(modes, asked)?;
+                resolved.lost += self.shock(modes, touching)?;
                 continue;
             }
-            // What holds from now on must not part, however slowly; what that pushes may close in elsewhere.
-            let closed = asked.iter().filter(|touching| modes.contacts[touching.contact].is_closed());
-            let parts = |touching: &&Touching| self.rate(touching.contact).abs() > self.rest_speed();
-            let Some(parting) = closed.into_iter().find(parts) else { return Ok(resolved) };
-            last = parting.contact;
+            // A contact that stays closed must not separate, however slowly; holding it may make another contact close.
+            let closed = touching.iter().filter(|touching| modes.contacts[touching.contact].is_closed());
+            let separates = |touching: &&Touching| self.rate(touching.contact).abs() > self.rest_speed();
+            let Some(separating) = closed.into_iter().find(separates) else {
+                self.write_changes(&at_first, modes, &mut resolved.events);
+                return Ok(resolved);
+            };
+            last = separating.contact;
             resolved.lost += hold::<D>(self.equation, self.system, self.qd);
         }
         Err(NoConsistentModes { contact: last })
     }
 
-    fn settle(&mut self, modes: &mut Modes, asked: &[Touching]) -> Result<(), NoConsistentModes> {
+    /// The modes under the applied forces.
+    fn settle(&mut self, modes: &mut Modes, touching: &[Touching]) -> Result<(), NoConsistentModes> {
         let EventResolution { equation, system, .. } = self;
         equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
-        settle::<D>(equation, system, modes, asked)
+        settle::<D>(equation, system, modes, touching)
     }
 
-    fn shock(&mut self, modes: &mut Modes, mut asked: Vec<Touching>) -> Result<f64, NoConsistentModes> {
-        if let Some(touching) = asked.first().filter(|_| asked.iter().all(|touching| touching.slip.is_none())) {
-            return Err(NoConsistentModes { contact: touching.contact });
+    /// The impulse where friction forces have no answer. Returns the energy lost [J].
+    fn shock(&mut self, modes: &mut Modes, mut touching: Vec<Touching>) -> Result<f64, NoConsistentModes> {
+        if let Some(first) = touching.first().filter(|_| touching.iter().all(|touching| touching.slip.is_none())) {
+            return Err(NoConsistentModes { contact: first.contact });
         }
-        asked.iter_mut().for_each(|touching| touching.may_stick = true);
+        touching.iter_mut().for_each(|touching| touching.may_stick = true);
         let EventResolution { equation, system, qd, thresholds, .. } = self;
         equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
-        shock::<D>(equation, system, modes, &asked, SHOCK * thresholds.frame, qd)
+        Impact::<D> { equation, system, touching: &touching, qd }.shock(modes, SHOCK * thresholds.frame)
     }
 
     fn evaluate(&mut self) {
@@ -130,120 +122,152 @@ impl<const D: usize> EventResolution<'_, D> {
         rest_speed(self.qd, &self.equation.WQ, self.thresholds.frame)
     }
 
-    /// The speed below which a flight under the applied forces does not last [m/s].
+    /// The speed below which a flight under the applied forces is shorter than the rest time [m/s].
     fn bounce_speed(&self) -> f64 {
-        let pull = self.equation.WQ.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
-        self.thresholds.shortest_flight.map_or(f64::INFINITY, |flight| 0.5 * flight * pull)
+        let largest = self.equation.WQ.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+        self.thresholds.shortest_flight.map_or(f64::INFINITY, |flight| 0.5 * flight * largest)
     }
 
-    /// Ċ of a contact.
-    fn rate(&self, contact: usize) -> f64 {
-        self.equation.rows.Cd[self.system.contacts.list[contact].normal]
+    /// Ċ of a contact: the speed at which it separates.
+    fn rate(&self, k: usize) -> f64 {
+        self.equation.rows.Cd[self.system.contacts.list[k].normal]
     }
 
-    /// Which contacts hold, or touch.
+    /// The contacts that are closed or touch.
     fn near(&self, modes: &mut Modes, cause: Option<EventCause>) -> Vec<usize> {
         let mut near = Vec::new();
-        for (place, contact) in self.system.contacts.list.iter().enumerate() {
+        for (k, contact) in self.system.contacts.list.iter().enumerate() {
             let gap = self.equation.rows.C[contact.normal];
-            if modes.is_gone(contact) || cause == Some(EventCause::Singular(place)) {
-                modes.contacts[place] = Mode::Open;
-            } else if modes.contacts[place].is_closed()
+            if modes.is_gone(contact) || cause == Some(EventCause::Singular(k)) {
+                modes.contacts[k] = Mode::Open;
+            } else if modes.contacts[k].is_closed()
                 || gap <= self.thresholds.touch_distance * self.system.row_scale[contact.normal]
             {
-                near.push(place);
+                near.push(k);
             }
         }
         near
     }
 
-    /// Which of them close in.
-    fn hits(&self, modes: &Modes, near: &[usize]) -> Vec<usize> {
+    /// Those of them that are open and closing.
+    fn closing(&self, modes: &Modes, near: &[usize]) -> Vec<usize> {
         let rest_speed = self.rest_speed();
-        let closes = |&place: &usize| modes.contacts[place] == Mode::Open && -self.rate(place) > rest_speed;
+        let closes = |&k: &usize| modes.contacts[k] == Mode::Open && -self.rate(k) > rest_speed;
         near.iter().copied().filter(closes).collect()
     }
 
-    fn touching(&self, place: usize, may_stick: bool, stops: bool) -> Touching {
-        let tangents = &self.system.contacts.list[place].tangents;
+    /// A touching contact with its slip; a slip that is `stopping` counts as zero up to `STOPS` × the rest speed.
+    fn touching(&self, k: usize, may_stick: bool, stopping: bool) -> Touching {
+        let tangents = &self.system.contacts.list[k].tangents;
         let slip = along(tangents.clone().map(|row| self.equation.rows.Cd[row]));
         let speed = size(slip);
-        let rest_speed = if stops { STOPS * self.rest_speed() } else { self.rest_speed() };
+        let rest_speed = if stopping { STOPS * self.rest_speed() } else { self.rest_speed() };
         let slip = (speed > rest_speed).then(|| slip.map(|component| component / speed));
-        Touching { contact: place, slip, may_stick: may_stick || slip.is_none() }
+        Touching { contact: k, slip, may_stick: may_stick || slip.is_none() }
     }
 
+    /// The impact of the closing contacts on all that are near.
     fn collide(
         &mut self,
         modes: &Modes,
         near: &[usize],
-        hits: &[usize],
+        closing: &[usize],
         resolved: &mut Resolved,
     ) -> Result<(), NoConsistentModes> {
         let bounce_speed = self.bounce_speed();
-        let speeds = hits.iter().map(|&place| (place, -self.rate(place)));
-        resolved.impacts.extend(speeds.filter(|&(_, speed)| speed > bounce_speed));
-        let touching: Vec<Touching> = near.iter().map(|&place| self.touching(place, true, false)).collect();
-        let gives_back: Vec<bool> = near.iter().map(|&place| -self.rate(place) > bounce_speed).collect();
+        for &k in closing.iter().filter(|&&k| -self.rate(k) > bounce_speed) {
+            let speed = -self.rate(k);
+            resolved.events.push(self.event(self.system.contacts.list[k].constraint, EventKind::Impact { speed }));
+        }
+        let touching: Vec<Touching> = near.iter().map(|&k| self.touching(k, true, false)).collect();
+        let bounces: Vec<bool> = near.iter().map(|&k| -self.rate(k) > bounce_speed).collect();
         let mut during = modes.clone();
-        for touching in touching.iter().filter(|touching| hits.contains(&touching.contact)) {
-            let has_friction = !self.system.contacts.list[touching.contact].tangents.is_empty();
-            during.contacts[touching.contact] = match touching.slip {
-                _ if !has_friction => Mode::Smooth,
-                Some(direction) => Mode::Sliding(direction),
-                None => Mode::Sticking,
-            };
+        for touching in touching.iter().filter(|touching| closing.contains(&touching.contact)) {
+            during.contacts[touching.contact] = touching.closed(self.system);
         }
         let EventResolution { equation, system, qd, .. } = self;
-        resolved.lost += collide::<D>(equation, system, &mut during, &touching, &gives_back, qd)?;
+        resolved.lost += Impact::<D> { equation, system, touching: &touching, qd }.collide(&mut during, &bounces)?;
         Ok(())
     }
 
-    /// What goes apart is open; the rest is asked. What parts so slowly that it would be back at once is asked, too.
-    fn ask(&self, modes: &mut Modes, near: Vec<usize>, is_smooth: bool, cause: Option<EventCause>) -> Vec<Touching> {
+    /// Opens the contacts that separate faster than the bounce speed, after an impact the closed ones, too. Returns the
+    /// others, with the modes of their slips brought up to date: the complementarity problem decides them.
+    fn open_separating(
+        &self,
+        modes: &mut Modes,
+        near: Vec<usize>,
+        is_without_impact: bool,
+        stopping: Option<EventCause>,
+    ) -> Vec<Touching> {
         let bounce_speed = self.bounce_speed();
-        let mut asked = Vec::new();
-        for place in near {
-            let may_part = !is_smooth || modes.contacts[place] == Mode::Open;
-            if may_part && self.rate(place) > bounce_speed {
-                modes.contacts[place] = Mode::Open;
+        let mut undecided = Vec::new();
+        for k in near {
+            let may_open = !is_without_impact || modes.contacts[k] == Mode::Open;
+            if may_open && self.rate(k) > bounce_speed {
+                modes.contacts[k] = Mode::Open;
                 continue;
             }
-            let touching = self.touching(place, false, D == 3 && cause == Some(EventCause::Friction(place)));
-            let mode = &mut modes.contacts[place];
+            let touching = self.touching(k, false, D == 3 && stopping == Some(EventCause::Friction(k)));
+            let mode = &mut modes.contacts[k];
             match (*mode, touching.slip) {
-                // What slips slowly keeps its direction, however roundoff turns the slip (`multiplier/friction.rs`).
-                (Mode::Sliding(kept), Some(slip)) if kept[0] * slip[0] + kept[1] * slip[1] > SAME_WAY => {}
-                (Mode::Sliding(_) | Mode::Sticking, Some(direction)) => *mode = Mode::Sliding(direction),
+                // A slow slip keeps its direction, however roundoff turns it (`integrate/events/slip.rs`).
+                (Mode::Sliding(kept), Some(slip))
+                    if kept.direction[0] * slip[0] + kept.direction[1] * slip[1] > SAME_WAY => {}
+                (Mode::Sliding(_) | Mode::Sticking, Some(direction)) => *mode = Mode::sliding(direction),
                 (Mode::Sliding(_), None) => *mode = Mode::Sticking,
                 _ => {}
             }
-            asked.push(touching);
+            undecided.push(touching);
         }
-        asked
+        undecided
     }
 
-    /// The direction in which what has stuck will slip: against the force that held it.
-    fn slips(&self, cause: Option<EventCause>) -> Option<[f64; 2]> {
-        let Some(EventCause::Friction(contact)) = cause else { return None };
-        let tangents = self.system.contacts.list[contact].tangents.clone();
-        let pull = along(tangents.map(|row| self.equation.lambda[row]));
-        let size = size(pull);
-        (size > 0.0).then(|| pull.map(|component| -component / size))
+    /// The direction in which a sticking contact will slip: against the force that held it.
+    fn next_slip(&self, cause: Option<EventCause>) -> Option<[f64; 2]> {
+        let Some(EventCause::Friction(k)) = cause else { return None };
+        let tangents = self.system.contacts.list[k].tangents.clone();
+        let lambda_t = along(tangents.map(|row| self.equation.lambda[row]));
+        let size = size(lambda_t);
+        (size > 0.0).then(|| lambda_t.map(|component| -component / size))
     }
 
-    /// Does what the cause says: its margin has just vanished.
-    fn turn(&self, modes: &mut Modes, cause: Option<EventCause>, slips: Option<[f64; 2]>) {
+    /// Changes the mode whose event function has just reached zero.
+    fn apply(&self, cause: Option<EventCause>, next_slip: Option<[f64; 2]>, modes: &mut Modes) {
         match cause {
-            Some(EventCause::Normal(contact)) if modes.contacts[contact].is_closed() => {
-                modes.contacts[contact] = Mode::Open;
+            Some(EventCause::Normal(k)) if modes.contacts[k].is_closed() => {
+                modes.contacts[k] = Mode::Open;
             }
-            Some(EventCause::Friction(contact)) if modes.contacts[contact] == Mode::Sticking => {
-                if let Some(direction) = slips {
-                    modes.contacts[contact] = Mode::Sliding(direction);
+            Some(EventCause::Friction(k)) if modes.contacts[k] == Mode::Sticking => {
+                if let Some(direction) = next_slip {
+                    modes.contacts[k] = Mode::sliding(direction);
                 }
             }
             _ => {}
         }
+    }
+
+    /// Adds the changes from the modes before to those after.
+    fn write_changes(&self, before: &Modes, after: &Modes, events: &mut Vec<Event>) {
+        let Contacts { list: contacts, breakables } = &self.system.contacts;
+        for (k, contact) in contacts.iter().enumerate() {
+            let kind = match (before.contacts[k], after.contacts[k]) {
+                (Mode::Open, Mode::Open) => continue,
+                (Mode::Open, _) => EventKind::Closed,
+                (_, Mode::Open) => EventKind::Opened,
+                (Mode::Sticking, Mode::Sliding(_)) => EventKind::Slipped,
+                (Mode::Sliding(_), Mode::Sticking) => EventKind::Stuck,
+                _ => continue,
+            };
+            events.push(self.event(contact.constraint, kind));
+        }
+        for (number, breakable) in breakables.iter().enumerate() {
+            if after.broken[number] && !before.broken[number] {
+                events.push(self.event(breakable.constraint, EventKind::Broke));
+            }
+        }
+    }
+
+    fn event(&self, constraint: usize, kind: EventKind) -> Event {
+        Event { time: self.t, constraint: self.system.constraints[constraint].name.clone(), kind }
     }
 }

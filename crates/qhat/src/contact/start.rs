@@ -1,4 +1,4 @@
-//! Whether a start respects what acts on one side, and what of that acts.
+//! Contacts of a start: how deep the deepest is violated, and which of them act.
 
 use super::{EventResolution, RestThresholds, TOUCH_DISTANCE};
 use crate::modes::Mode;
@@ -8,8 +8,8 @@ use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// The contact that is violated most while open, by its constraint's place, and −C [m]; `None` where all are within `tolerance`,
-/// relative to their rows' scales, as far as what touches may be off.
+/// The open contact that is violated most: the index of its constraint, and −C [m]. `None` where every open contact is
+/// within `TOUCH_DISTANCE` × `tolerance` of its row's scale.
 pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance: f64) -> Option<(usize, f64)> {
     if system.contacts.list.is_empty() {
         return None;
@@ -27,8 +27,8 @@ pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance:
     violated.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(contact, depth)| (contact.constraint, depth))
 }
 
-/// Closes what is taut or lies on something, so that forces are known before the first step. Where that would be an impact, or has no
-/// answer, it is left to the first step, which tells of it.
+/// Closes taut ropes and contacts at rest, so that forces are known before the first step. A contact whose closing
+/// would be an impact, or has no answer, is left to the first step, which reports it.
 pub(crate) fn close<const D: usize>(system: &System, state: &mut State, settings: &Settings, equation: &mut Equation) {
     let thresholds = RestThresholds {
         touch_distance: TOUCH_DISTANCE * settings.constraint_tolerance,

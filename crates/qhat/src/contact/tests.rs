@@ -2,7 +2,7 @@
 
 use super::cones::propose;
 use super::{Touching, settle};
-use crate::modes::{Mode, Modes};
+use crate::modes::{Mode, Modes, Slip};
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::{Dimension, Limits, Obstacle, Particle, ParticleId, State, Surface, System};
@@ -71,7 +71,7 @@ fn by_trying(A: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     panic!("a positive definite problem has a solution");
 }
 
-/// Ropes between random points, pushed at random.
+/// Ropes between random points under random forces.
 #[test]
 fn it_finds_what_trying_all_sets_finds() {
     let mut random = Random(7);
@@ -117,7 +117,8 @@ fn it_finds_what_trying_all_sets_finds() {
     }
 }
 
-/// A particle at rest on rough ground under a random force: it lifts off, sticks, or slips where the force pulls.
+/// A particle at rest on rough ground under a random force: it lifts off, sticks, or slips in the direction of the
+/// force.
 #[test]
 fn friction_sticks_slips_or_lifts_off() {
     let mut random = Random(11);
@@ -150,7 +151,7 @@ fn friction_sticks_slips_or_lifts_off() {
                 assert!((equation.lambda[0] + force[1]).abs() < 1e-12);
                 seen[1] += 1;
             }
-            Mode::Sliding(direction) => {
+            Mode::Sliding(Slip { direction, .. }) => {
                 assert!(force[1] < 0.0 && size * mass > -friction * force[1]);
                 let along = (direction[0] * across[0] + direction[1] * across[1]) / size;
                 assert!((along - 1.0).abs() < 1e-12, "{direction:?} against {across:?}");

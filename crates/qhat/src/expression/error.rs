@@ -1,4 +1,4 @@
-//! Why an expression was refused: where, what, and what to write instead.
+//! Why an expression was refused: the place, the reason, and what to write instead.
 
 use std::ops::Range;
 use thiserror::Error;
@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// The part concerned, in bytes of the text; on borders of characters, empty at its end.
+    /// The part of the text [bytes], on borders of characters; empty at the end of the text.
     pub span: Range<usize>,
     /// What is wrong.
     pub message: String,
@@ -57,7 +57,7 @@ pub enum ParameterError {
     },
 }
 
-/// Letters of a quotation, beyond which it no longer reads as a name.
+/// The longest quotation [letters]; a longer one no longer reads as a name.
 const QUOTED: usize = 40;
 
 /// A piece of the text in backticks, cut if it is long.

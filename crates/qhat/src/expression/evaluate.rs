@@ -27,10 +27,12 @@
 //!
 //! leaves column j of ∂²C/∂x² in the adjoints' changes of the coordinates.
 //!
-//! Velocities are held: in q̇ = constant lies γ, and a gradient by velocities is its own. An adjoint of zero is not passed on, so
-//! that an inactive branch of least and greatest may have infinite derivatives.
+//! The jet keeps velocities constant, as the definition of γ does, and a gradient by velocities is a pass of its own.
+//! An adjoint of zero is not passed on, so that an inactive branch of least and greatest may have infinite
+//! derivatives.
 //!
 //! Nothing is allocated: the numbers of a tape lie on the stack, in the smallest of three sizes that holds them.
+//!
 //! Source: A. Griewank, A. Walther, Evaluating Derivatives (2008), chapters 3, 5 and 10.
 
 use super::operation::Operation;
@@ -58,8 +60,8 @@ pub(super) struct At<'a> {
     pub(super) t: f64,
 }
 
-/// The numbers of one instruction: its value, two of its derivatives, and its adjoint; of a Hessian the value, its change, the
-/// adjoint's change and the adjoint.
+/// The numbers of one instruction: its value, two of its derivatives, and its adjoint. Of a Hessian: the value, the
+/// change of the value, the change of the adjoint, and the adjoint.
 pub(super) type Numbers = [f64; 4];
 
 pub(super) const ADJOINT: usize = 3;
@@ -68,7 +70,7 @@ const ADJOINT_CHANGE: usize = 2;
 
 /// Runs `body` with room for `count` instructions.
 pub(super) fn with_room<R>(count: usize, body: impl FnOnce(&mut [Numbers]) -> R) -> R {
-    // A rod takes 13 instructions and a volume 37; what few expressions need shall not be cleared for all.
+    // A rod takes 13 instructions and a volume 37. Clearing room for the largest expression would slow all others.
     match count {
         0..=32 => on_stack::<32, R>(count, body),
         33..=256 => on_stack::<256, R>(count, body),
@@ -76,7 +78,7 @@ pub(super) fn with_room<R>(count: usize, body: impl FnOnce(&mut [Numbers]) -> R)
     }
 }
 
-/// Its own frame, so that a small expression does not take the stack of a large one.
+/// A stack frame of its own, so that a small expression does not take the stack of a large one.
 #[inline(never)]
 fn on_stack<const N: usize, R>(count: usize, body: impl FnOnce(&mut [Numbers]) -> R) -> R {
     body(&mut [[0.0; 4]; N][..count])
@@ -175,7 +177,7 @@ impl Tape {
         }
     }
 
-    /// Calls `visit(i, j, block)`, i ≤ j, with the blocks of ∂²C/∂x² between its particles; not where one is zero.
+    /// Calls `visit(i, j, block)`, i ≤ j, with each block of ∂²C/∂x² between its particles that is not zero.
     pub(super) fn hessian_blocks<const D: usize>(
         &self,
         at: At<'_>,
@@ -234,7 +236,8 @@ impl Tape {
     }
 }
 
-/// x y, and 0 where a derivative is none: what does not depend on a coordinate stays so where the other factor is infinite.
+/// x y, and 0 where one factor is 0: a part that does not depend on a coordinate stays independent where the other
+/// factor is infinite.
 #[inline(always)]
 fn product(x: f64, y: f64) -> f64 {
     if x == 0.0 || y == 0.0 { 0.0 } else { x * y }

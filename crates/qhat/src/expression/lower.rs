@@ -1,4 +1,5 @@
-//! Tree → tape: names find their meaning, points become d scalars, and whatever has no meaning is refused with its place.
+//! Lower: tree → tape. Names get their meaning and points become d scalars. A part without a meaning is refused with
+//! its place.
 
 use super::error::{ExpressionError, quoted};
 use super::functions::FUNCTIONS;
@@ -10,7 +11,7 @@ use super::{MAX_INSTRUCTIONS, MAX_PRODUCT};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// What a part of the expression is.
+/// A part of the expression on the tape.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(Slot),
@@ -18,7 +19,7 @@ pub(super) enum Value {
     Point(Vec<Slot>),
 }
 
-/// A value and the text it comes from.
+/// A value and the place of its text.
 pub(super) struct Argument {
     pub(super) value: Value,
     pub(super) span: Range<usize>,
@@ -28,7 +29,7 @@ pub(super) struct Lowering<'a> {
     pub(super) text: &'a str,
     pub(super) scope: &'a Scope<'a>,
     pub(super) tape: Builder,
-    /// The different names met so far.
+    /// The different names so far.
     pub(super) names: BTreeSet<&'a str>,
 }
 
@@ -66,7 +67,7 @@ pub(super) fn tape(text: &str, tree: Tree, scope: &Scope<'_>) -> Lowered<Tape> {
     }
 }
 
-/// An instruction that could not be appended, at the part that asked for it.
+/// The error of an instruction that could not be appended, at the part of the text that needs it.
 pub(super) fn refused(refusal: Refusal, span: &Range<usize>) -> ExpressionError {
     match refusal {
         Refusal::TooMany => {
@@ -84,7 +85,7 @@ impl<'a> Lowering<'a> {
         quoted(&self.text[span.clone()])
     }
 
-    /// How to make a number of the point at `span`.
+    /// Help on how to make a number of the point at `span`.
     pub(super) fn number_from(&self, span: &Range<usize>) -> String {
         let piece = &self.text[span.clone()];
         if super::token::is_name(piece) && piece.len() <= 20 {
@@ -143,7 +144,7 @@ impl<'a> Lowering<'a> {
         })
     }
 
-    /// An operator between values it has no meaning for.
+    /// The error of an operator between values of the wrong type.
     fn mismatch(&self, operator: Operator, a: &Argument, b: &Argument, span: &Range<usize>) -> ExpressionError {
         let kind = |value: &Value| if matches!(value, Value::Number(_)) { "a number" } else { "a point" };
         let (x, y) = (self.piece(&a.span), self.piece(&b.span));

@@ -1,4 +1,4 @@
-//! Expressions: C(q, t), a component of a force, a potential or a function of time, written as text, with exact derivatives.
+//! Expressions: C(q, t), a component of a force, a potential or a function of time as text, with exact derivatives.
 //!
 //! ```
 //! use qhat::{Dimension, Expression, ParticleId, Purpose, Scope};
@@ -14,9 +14,11 @@
 //! # Ok::<(), qhat::ExpressionError>(())
 //! ```
 //!
-//! The way of a text: tokens → tree (operator precedence) → tape (names resolved, points in components, constants folded, equal
-//! parts shared) → passes over the tape. Text may come from anyone: its size is limited before each stage begins, no stage recurses
-//! deeper than [`MAX_DEPTH`] brackets allow, and evaluation cannot fail; it may give inf or nan, which the caller reports.
+//! Stages of a text: tokens → tree (operator precedence) → tape (names resolved, points in components, constants
+//! folded, equal parts shared) → passes over the tape.
+//!
+//! Text may come from anyone. Each stage limits the size of its input before it begins, and no stage recurses deeper
+//! than [`MAX_DEPTH`] brackets allow. Evaluation cannot fail; it may give inf or NaN, which the caller reports.
 //! `docs/method/expressions.md` has the language.
 
 mod error;
@@ -37,28 +39,31 @@ pub use scope::{Purpose, Scope, check_parameter};
 use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::space::ParticleId;
+pub(crate) use operation::Operation;
+
 use evaluate::{At, with_room};
 use std::fmt;
 use std::sync::Arc;
 use tape::{Input, Tape};
 
-/// Bytes of text.
+/// The largest text [bytes].
 pub const MAX_BYTES: usize = 4096;
-/// Numbers, names and operations, as written.
+/// The largest number of numbers, names and operations, as written.
 pub const MAX_NODES: usize = 512;
-/// Different names of particles and parameters.
+/// The largest number of different names of particles and parameters.
 pub const MAX_NAMES: usize = 64;
-/// Numbers of the longest gradient: d = 3 of each particle.
+/// The length of the longest gradient: d = 3 numbers for each particle.
 pub(crate) const LONGEST_GRADIENT: usize = 3 * MAX_NAMES;
-/// Brackets, signs and powers open at once. Parsing recurses so deep: unoptimised, 64 with a summand and a factor before each bracket
-/// overflowed a stack of 512 kB and 32 fit; a page has 1 MB.
+/// The largest number of brackets, signs and powers open at once, which is the depth of the recursion. Unoptimised,
+/// 64 with a summand and a factor before each bracket overflowed a stack of 512 kB, and 32 fit; a page has 1 MB.
 pub const MAX_DEPTH: usize = 32;
-/// Scalar operations after points are taken apart: what 512 nodes of volumes could grow to is cut here, at 64 kB of stack.
+/// The largest number of scalar operations, after points are taken apart in components. 512 nodes of volumes could
+/// grow to many more; this number takes 64 kB of stack.
 pub const MAX_INSTRUCTIONS: usize = 2048;
-/// Up to this integer exponent a power is a product, of at most 20 factors.
-const MAX_PRODUCT: f64 = 1024.0;
+/// The largest integer exponent whose power is a product, of at most 20 factors.
+pub(crate) const MAX_PRODUCT: f64 = 1024.0;
 
-/// A parsed expression: a number that depends on positions, velocities and time. Cloning shares it.
+/// A parsed expression: a number that depends on positions, velocities and time. Clones share it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     parsed: Arc<Parsed>,
@@ -72,10 +77,10 @@ struct Parsed {
 }
 
 impl Expression {
-    /// Parses a text whose names the scope knows.
+    /// Parses a text with the names of a scope.
     ///
     /// # Errors
-    /// With the place in the text, where it is no expression, uses a name or type it may not, or is too large.
+    /// With the place in the text: no expression, a name or type that is not allowed there, too large.
     pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, ExpressionError> {
         if text.len() > MAX_BYTES {
             let message = format!("the expression has {} bytes; at most {MAX_BYTES} are allowed", text.len());
@@ -94,32 +99,34 @@ impl Expression {
         &self.parsed.text
     }
 
-    /// The particles it depends on, each once, in the order of first use: the order of the blocks of a gradient.
+    /// The particles that the expression depends on, each once, in the order of first use. The blocks of a gradient
+    /// have the same order.
     pub fn particles(&self) -> &[ParticleId] {
         &self.tape().particles
     }
 
-    /// Length of a gradient: d numbers for each of its particles.
+    /// The length of a gradient: d numbers for each particle of the expression.
     pub fn gradient_len(&self) -> usize {
         self.parsed.dimension * self.tape().particles.len()
     }
 
-    /// Whether it depends on t.
+    /// Whether the expression depends on t.
     pub fn uses_time(&self) -> bool {
         self.tape().time.is_some()
     }
 
-    /// Whether it depends on velocities.
+    /// Whether the expression depends on velocities.
     pub fn uses_velocities(&self) -> bool {
         !self.tape().velocities.is_empty()
     }
 
-    /// Scalar operations and inputs of one evaluation: what it costs.
+    /// The cost of one evaluation: its scalar operations and inputs.
     pub fn instruction_count(&self) -> usize {
         self.tape().instructions.len()
     }
 
-    /// Its value at q [m], q̇ [m/s], flat, d numbers a particle of the system, and t [s]. q̇ may be empty where it is not used.
+    /// The value at q [m], q̇ [m/s] (flat, d numbers a particle of the system) and t [s]. q̇ may be empty if no
+    /// velocity is used.
     pub fn value(&self, q: &[f64], qd: &[f64], t: f64) -> f64 {
         self.run(|tape, room| tape.values(At { q, qd, t }, room))
     }
@@ -129,7 +136,7 @@ impl Expression {
         self.run(|tape, room| tape.jets(At { q, qd, t }, room))
     }
 
-    /// The same, with J [C/m] written to `gradient`, d numbers for each of its particles, and C_t [C/s] returned.
+    /// The same, and C_t [C/s]. J [C/m] is written to `gradient`, d numbers for each particle of the expression.
     ///
     /// # Panics
     /// Where `gradient` is shorter than [`Expression::gradient_len`].
@@ -142,8 +149,8 @@ impl Expression {
         })
     }
 
-    /// Its value, with its derivatives by positions and by velocities written, d numbers for each of its particles. `by_velocity` may be
-    /// empty where no velocity is used.
+    /// The value. Its derivatives by positions and by velocities are written, d numbers for each particle of the
+    /// expression. `by_velocity` may be empty if no velocity is used.
     ///
     /// # Panics
     /// Where one of them is shorter than [`Expression::gradient_len`].
@@ -167,7 +174,7 @@ impl Expression {
         self.run(|tape, room| tape.hessian(At { q, qd, t }, room, self.gradient_len(), hessian));
     }
 
-    /// Calls `visit(i, j, block)`, i ≤ j counting its particles, with the blocks of ∂²C/∂x² [C/m²]; not where one is zero.
+    /// Calls `visit(i, j, block)`, i ≤ j counting its particles, with each block of ∂²C/∂x² [C/m²] that is not zero.
     pub(crate) fn hessian_blocks<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -177,7 +184,7 @@ impl Expression {
         self.run(|tape, room| tape.hessian_blocks(At { q, qd, t }, room, visit));
     }
 
-    /// d of the scope it was parsed in.
+    /// The number of dimensions of the scope.
     pub(crate) fn dimension(&self) -> usize {
         self.parsed.dimension
     }

@@ -1,4 +1,4 @@
-//! What a name means: time, a constant, a parameter, a particle, or one of its coordinates.
+//! Names: time, a constant, a parameter, a particle, or one of the coordinates of a particle.
 
 use super::MAX_NAMES;
 use super::error::{ExpressionError, quoted};
@@ -15,7 +15,7 @@ impl<'a> Lowering<'a> {
         [self.scope.purpose.variable(), CONSTANTS[0].0, CONSTANTS[1].0]
     }
 
-    /// Whether a name without coordinate stands for something.
+    /// Whether a name without coordinate is known.
     pub(super) fn has_meaning(&self, name: &str) -> bool {
         self.own().contains(&name) || (self.scope.particle)(name).is_some() || (self.scope.parameter)(name).is_some()
     }
@@ -97,18 +97,21 @@ impl<'a> Lowering<'a> {
         match self.scope.purpose {
             Purpose::Force => self.push(Instruction::Velocity(particle.0 * d + k), span).map(Value::Number),
             Purpose::Constraint => Err(error(format!(
-                "{name} is a velocity, but a constraint C(q, t) = 0 may hold positions and time only: the velocities it allows follow from it"
+                "{name} is a velocity, but a constraint C(q, t) = 0 may hold positions and time only: \
+                 the velocities it allows follow from it"
             ))
             .with_help("write what the positions must satisfy; to act on velocities, use a force")),
             // Scopes of time and of a curve have refused the particle.
-            Purpose::Potential | Purpose::Time | Purpose::Curve => Err(error(format!(
-                "{name} is a velocity, but a potential energy depends on positions and time only"
-            ))
-            .with_help("write a force that depends on velocities as a force, one expression for each component")),
+            Purpose::Potential | Purpose::Time | Purpose::Curve => {
+                Err(error(format!("{name} is a velocity, but a potential energy depends on positions and time only"))
+                    .with_help(
+                        "write a force that depends on velocities as a force, one expression for each component",
+                    ))
+            }
         }
     }
 
-    /// What may follow the name of a particle.
+    /// Help on what may follow the name of a particle.
     fn coordinates(&self, base: &str) -> String {
         let axes: &[&str] = match self.scope.dimension {
             Dimension::Two => &["x", "y"],

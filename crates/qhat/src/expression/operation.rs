@@ -4,15 +4,16 @@
 //! v = f(a, b)    f_a, f_b    f_aa, f_ab, f_bb
 //! ```
 //!
-//! A function of one argument has f_b = f_ab = f_bb = 0. Kinks take the branch that is active: |a| the one of a ≥ 0, least and
-//! greatest that of the first argument where both are equal. Where a derivative is infinite (√0, acos 1) or undefined it is
-//! returned so.
+//! A function of one argument has f_b = f_ab = f_bb = 0. At a kink the active branch counts: of |a| the branch of a ≥
+//! 0, of least and greatest that of the first argument where both are equal. An infinite (√0, acos 1) or undefined
+//! derivative is returned as inf or NaN.
 //!
-//! Each is computed in the order written, by `libm` where it is no IEEE operation, so that all targets give the same bits.
+//! Every number is computed in the order written, by `libm` where the operation is not one of IEEE 754, so that all
+//! targets give the same bits.
 
-/// What an operation does to its arguments. A function of one argument does not look at b.
+/// An operation on one or two numbers. A function of one argument ignores b.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Operation {
+pub(crate) enum Operation {
     Add,
     Subtract,
     Multiply,
@@ -41,7 +42,7 @@ pub(super) enum Operation {
 use Operation::*;
 
 impl Operation {
-    /// Whether it looks at b.
+    /// Whether the operation depends on b.
     #[inline(always)]
     pub(super) fn is_binary(self) -> bool {
         matches!(self, Add | Subtract | Multiply | Divide | PowerOf | Power | Angle | Least | Greatest)
@@ -54,7 +55,7 @@ impl Operation {
 
     /// f(a, b).
     #[inline(always)]
-    pub(super) fn value(self, a: f64, b: f64) -> f64 {
+    pub(crate) fn value(self, a: f64, b: f64) -> f64 {
         match self {
             Add => a + b,
             Subtract => a - b,
@@ -83,7 +84,7 @@ impl Operation {
         }
     }
 
-    /// Whether the active branch of least or greatest is a. Not a number stays so from either side.
+    /// Whether the active branch of least or greatest is a. NaN on either side gives NaN.
     #[inline(always)]
     pub(super) fn takes_first(self, a: f64, b: f64) -> bool {
         a.is_nan() || if self == Least { a <= b } else { a >= b }
@@ -91,7 +92,7 @@ impl Operation {
 
     /// [f_a, f_b], where v = f(a, b).
     #[inline(always)]
-    pub(super) fn first(self, a: f64, b: f64, v: f64) -> [f64; 2] {
+    pub(crate) fn first(self, a: f64, b: f64, v: f64) -> [f64; 2] {
         match self {
             Add => [1.0, 1.0],
             Subtract => [1.0, -1.0],
@@ -126,7 +127,7 @@ impl Operation {
 
     /// [f_aa, f_ab, f_bb], where v = f(a, b) and [f_a, f_b] are the first derivatives.
     #[inline(always)]
-    pub(super) fn second(self, a: f64, b: f64, v: f64, [f_a, f_b]: [f64; 2]) -> [f64; 3] {
+    pub(crate) fn second(self, a: f64, b: f64, v: f64, [f_a, f_b]: [f64; 2]) -> [f64; 3] {
         match self {
             Add | Subtract | Negate | Absolute | Least | Greatest => [0.0; 3],
             Multiply => [0.0, 1.0, 0.0],
@@ -150,7 +151,7 @@ impl Operation {
     }
 }
 
-/// s ln a, for s that vanishes with a power of a: then the product does, too.
+/// s ln a, and 0 where s = 0: s vanishes with a power of a, and the product with it.
 #[inline(always)]
 fn times_logarithm(s: f64, a: f64) -> f64 {
     if s == 0.0 { 0.0 } else { s * libm::log(a) }

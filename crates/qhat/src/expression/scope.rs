@@ -1,11 +1,11 @@
-//! Scope: which names an expression may use, and what they mean.
+//! Scope: the names that an expression may use, and their meaning.
 
 use super::error::ParameterError;
 use super::functions::FUNCTIONS;
 use super::token::is_name;
 use crate::space::{Dimension, ParticleId};
 
-/// What an expression is for, which decides what it may depend on.
+/// The purpose of an expression, which decides what the expression may depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// C(q, t) = 0: positions and time.
@@ -14,14 +14,14 @@ pub enum Purpose {
     Force,
     /// A potential energy: positions and time.
     Potential,
-    /// A number that is driven: time alone.
+    /// A driven number: time alone.
     Time,
-    /// A component of a curve: its parameter alone, which is written `s` in the place of `t`.
+    /// A component of a curve: the parameter of the curve alone, written `s` in the place of `t`.
     Curve,
 }
 
 impl Purpose {
-    /// How the variable that is no coordinate is written.
+    /// The letter of the variable that is no coordinate.
     pub(super) fn variable(self) -> &'static str {
         if self == Purpose::Curve { "s" } else { "t" }
     }
@@ -30,15 +30,15 @@ impl Purpose {
 /// The names that an expression may use beside `t`, `pi` and `tau`.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {
-    /// What the expression is for.
+    /// The purpose of the expression.
     pub purpose: Purpose,
-    /// d.
+    /// The number of dimensions.
     pub dimension: Dimension,
     /// The particle of a name.
     pub particle: &'a dyn Fn(&str) -> Option<ParticleId>,
-    /// The number of a parameter; its name and number have passed [`check_parameter`].
+    /// The value of a parameter; its name and value have passed [`check_parameter`].
     pub parameter: &'a dyn Fn(&str) -> Option<f64>,
-    /// The name nearest to one that does not exist, among these and those of the scope, for "did you mean".
+    /// The known name nearest to one that does not exist, for "did you mean".
     pub suggest: &'a dyn Fn(&str, &[&'static str]) -> Option<String>,
 }
 
@@ -70,5 +70,5 @@ pub fn check_parameter(name: &str, value: f64) -> Result<(), ParameterError> {
     Ok(())
 }
 
-/// Numbers with a name of their own.
+/// The named numbers of the language.
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU)];

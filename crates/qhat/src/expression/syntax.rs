@@ -1,4 +1,4 @@
-//! Tokens → tree, by operator precedence:
+//! Syntax: tokens → tree, by operator precedence:
 //!
 //! ```text
 //! a ^ b        binds tightest, to the right
@@ -7,8 +7,8 @@
 //! a + b, a − b to the left
 //! ```
 //!
-//! Parsing recurses once a bracket, a sign and a power, and at most twice more a bracket, for a factor of a summand. How deep that
-//! becomes is counted over the tokens before parsing begins.
+//! Parsing recurses once for each bracket, sign and power, and at most twice more a bracket, for a factor of a
+//! summand. The depth is counted over the tokens before parsing begins.
 
 use super::error::{ExpressionError, quoted};
 use super::token::{Token, TokenKind};
@@ -19,7 +19,7 @@ use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{Stateful, Stream};
 
-/// The place of a node in the tree. Operands stand before what is made of them.
+/// The place of a node in the tree. Operands stand before their operation.
 pub(super) type Node = usize;
 
 /// A node of the tree.
@@ -50,7 +50,7 @@ pub(super) enum Operator {
 #[derive(Debug, Default)]
 pub(super) struct Tree {
     pub(super) nodes: Vec<(Syntax, Range<usize>)>,
-    /// Where the signs stand whose operands are not yet read.
+    /// The places of the signs whose operands are not yet read.
     signs: Vec<usize>,
 }
 
@@ -99,9 +99,9 @@ pub(super) fn tree(text: &str, tokens: &[Token]) -> Result<Tree, ExpressionError
     })
 }
 
-/// Brackets, signs and powers that are open at once.
+/// The largest number of brackets, signs and powers that are open at once.
 fn check_depth(tokens: &[Token]) -> Result<(), ExpressionError> {
-    // Signs and powers of each open bracket; a summand or factor that ends takes its own with it.
+    // Signs and powers of each open bracket; the end of a summand or factor closes those it contains.
     let mut open = vec![0];
     let mut depth = 0;
     let mut after_operand = false;
@@ -160,7 +160,7 @@ fn operand(input: &mut Input<'_>) -> Parsed<Node> {
             input.next_token();
             let node = cut_err(whole).parse_next(input)?;
             let end = close(input, ')', &token.span)?;
-            // An operation on what stands in brackets is marked with its brackets.
+            // The span of an operation on a bracket includes the bracket.
             input.state.nodes[node].1 = token.span.start..end;
             Ok(node)
         }
@@ -285,7 +285,7 @@ fn not_closed(text: &str, tokens: &[Token], open: Range<usize>, rest: usize) -> 
     }
 }
 
-/// What follows a complete expression but does not belong to it.
+/// The error of text that follows a complete expression.
 fn left_over(text: &str, tokens: &[Token], rest: &[Token]) -> ExpressionError {
     let token = &rest[0];
     let found = quoted(&text[token.span.clone()]);

@@ -1,5 +1,5 @@
-//! Tape: the scalar instructions of an expression, each after what it needs. Equal ones are there once, and what
-//! depends on constants alone is a constant.
+//! Tape: the scalar instructions of an expression, each after its operands. Equal instructions are stored once, and
+//! an instruction on constants alone is a constant.
 
 use super::MAX_INSTRUCTIONS;
 use super::operation::Operation::{self, *};
@@ -29,9 +29,9 @@ use Instruction::*;
 /// Why an instruction was not appended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Refusal {
-    /// It would be one too many.
+    /// The tape is full.
     TooMany,
-    /// It is a constant and not finite.
+    /// The instruction is a constant and not finite.
     NotFinite,
 }
 
@@ -86,7 +86,7 @@ impl Builder {
         self.push(Apply(operation, a, b))
     }
 
-    /// What `root` needs.
+    /// The instructions that `root` needs.
     pub(super) fn finish(self, root: Slot, dimension: usize) -> Tape {
         let root = usize::from(root);
         let mut needed = vec![false; root + 1];
@@ -117,7 +117,7 @@ impl Builder {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Tape {
     pub(super) instructions: Vec<Instruction>,
-    /// The particles it touches, in the order of first use.
+    /// The particles that the expression depends on, in the order of first use.
     pub(super) particles: Vec<ParticleId>,
     /// Where positions are read.
     pub(super) positions: Vec<Input>,

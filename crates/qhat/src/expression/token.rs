@@ -1,4 +1,4 @@
-//! Text → tokens, each with its span.
+//! Token: text → tokens, each with its span.
 
 use super::error::{ExpressionError, quoted};
 use std::ops::Range;
@@ -9,7 +9,7 @@ use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location};
 use winnow::token::{one_of, take_while};
 
-/// What a token is; a name with its text is read from its span.
+/// The kind of a token. The text of a name is read from its span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TokenKind {
     Number(f64),
@@ -19,7 +19,7 @@ pub(super) enum TokenKind {
     Symbol(char),
 }
 
-/// A token and where it stands.
+/// A token and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Token {
     pub(super) kind: TokenKind,
@@ -56,7 +56,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ExpressionError> {
     }
 }
 
-/// Whether all of a text is one name without a dot.
+/// Whether a whole text is one name without a dot.
 pub(super) fn is_name(text: &str) -> bool {
     identifier.parse(LocatingSlice::new(text)).is_ok()
 }
@@ -78,7 +78,7 @@ fn identifier<'i>(input: &mut Text<'i>) -> Lexed<&'i str> {
     (first, take_while(0.., |c: char| c.is_alphabetic() || c.is_ascii_digit() || c == '_')).take().parse_next(input)
 }
 
-/// A character that begins no token.
+/// The error of a character that begins no token.
 fn stray(start: usize, c: char) -> ExpressionError {
     let shown = if c.is_control() { format!("the character U+{:04X}", c as u32) } else { format!("`{c}`") };
     let help = match c {

@@ -7,8 +7,8 @@
 //! −∂F_a/∂x_a = −f (I − nnᵀ)/|L|                  [N/m]
 //! ```
 //!
-//! At |L| = 0 the direction is undefined and it pushes nowhere. Beside a rod of the same ends it does no work and only
-//! changes the tension of that rod.
+//! At |L| = 0 the direction is undefined, and the force is zero. Beside a rod of the same ends an actuator does no
+//! work and changes the tension of that rod only.
 
 use super::line::Line;
 use super::{Acts, Dependence, ForceError};
@@ -60,7 +60,7 @@ impl Acts for Actuator {
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         let Some(Line { length, .. }) = Line::between(motion, self.a, self.b) else { return };
-        // The most it can be at any time; the row sum counts both ends.
+        // The largest |f| at any time; the row sum counts both ends.
         let both_ends = 2.0 * (self.push.abs() + self.amplitude.abs()) / length;
         bound(self.a, both_ends, 0.0);
         bound(self.b, both_ends, 0.0);

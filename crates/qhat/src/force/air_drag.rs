@@ -1,4 +1,4 @@
-//! Drag of one particle in air that may move: linear (slow, small) and quadratic (fast, large).
+//! AirDrag: drag of one particle in air that may move, linear (slow, small) and quadratic (fast, large).
 //!
 //! ```text
 //! w = w₀ + G x,   u = v − w                               [m/s]
@@ -7,8 +7,9 @@
 //! B = −∂F/∂u = (c₁ + c₂ |u|) I + c₂ uuᵀ/|u|,   −∂F/∂v = B,   −∂F/∂x = −B G
 //! ```
 //!
-//! w₀ is the wind at the origin and G [1/s] its gradient. A ball of radius R in a gas of density ϱ has c₂ = ½ c_w ϱ π R²
-//! (c_w ≈ 0.47). Without relative motion there is no drag, and |u| has no gradient there: uuᵀ/|u| is then zero.
+//! w₀ is the wind at the origin and G [1/s] its gradient. A ball of radius R in a gas of density ϱ has c₂ = ½ c_w ϱ π
+//! R² (c_w ≈ 0.47). Without relative motion there is no drag, and |u| has no gradient; uuᵀ/|u| is taken as zero
+//! there.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};
@@ -86,7 +87,8 @@ impl Acts for AirDrag {
         if speed > 0.0 {
             B = plus(B, rate * self.quadratic / speed, outer(1.0, u, u));
         }
-        // BG is no symmetric matrix; beside rate·B, a method's steps being short, Newton's method does without it.
+        // BG is no symmetric matrix. Steps are short, so it is small beside rate·B, and Newton's method does without
+        // it.
         visit(self.particle, self.particle, Stiffness::Difference(B));
     }
 

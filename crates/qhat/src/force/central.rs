@@ -1,5 +1,5 @@
-//! Inverse-square force between one particle and a point p that does not move: the law of `inverse_square.rs` with
-//! d = x − p. For gravity towards p, s = −μ m with μ = G M [m³/s²].
+//! CentralForce: an inverse-square force between one particle and a fixed point p: the law of `inverse_square.rs`
+//! with d = x − p. For gravity towards p, s = −μ m with μ = G M [m³/s²].
 
 use super::inverse_square::Law;
 use super::{Acts, Dependence, ForceError};

@@ -1,4 +1,5 @@
-//! Damped spring with a cubic term: one that stiffens (k₃ > 0), softens (k₃ < 0) or has two places of rest (k₁ < 0 < k₃).
+//! CubicSpring: a damped spring with a cubic term that stiffens (k₃ > 0), softens (k₃ < 0) or has two places of rest
+//! (k₁ < 0 < k₃).
 //!
 //! ```text
 //! x = |L| − r                                                [m], L, L̇ and n as in `line.rs`
@@ -8,7 +9,7 @@
 //! −∂F_a/∂x_a = (k₁ + 3 k₃ x²) nnᵀ + [k₁ x + k₃ x³ + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
-//! At |L| = 0 the direction is undefined and it pulls nowhere.
+//! At |L| = 0 the direction is undefined, and the force is zero.
 
 use super::line::Line;
 use super::{Acts, Dependence, ForceError};
@@ -86,7 +87,8 @@ impl Acts for CubicSpring {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
         let Some(line) = Line::between(motion, self.a, self.b) else { return };
-        // The damper also depends on q through n; that part is no symmetric matrix, and Newton's method does without it.
+        // The damper also depends on q through n. That part is no symmetric matrix, and Newton's method does without
+        // it.
         let across = (self.pull(line.length) + self.damping * line.rate) / line.length;
         let along = outer(self.along(line.length) + rate * self.damping, line.n, line.n);
         visit(self.a, self.b, Stiffness::Difference(along));

@@ -1,4 +1,4 @@
-//! Viscous drag, the source's "damping": it slows every particle.
+//! Drag: viscous drag, the source's "damping", which slows every particle.
 //!
 //! ```text
 //! F_i = −kd v_i                  [N], kd in N·s/m

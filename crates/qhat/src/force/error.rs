@@ -39,6 +39,15 @@ pub enum ForceError {
         /// The kind of the force.
         what: &'static str,
     },
+    /// One particle is named twice.
+    #[error("{what} needs different particles, but one is named twice")]
+    NamedTwice {
+        /// The kind of the force.
+        what: &'static str,
+    },
+    /// A custom force names no particle.
+    #[error("a custom force names no particle, so that it pulls nothing")]
+    CustomWithoutParticles,
     /// Two of the three particles of a torsion spring are the same.
     #[error("a torsion spring needs three different particles")]
     TorsionParticles,

@@ -1,4 +1,4 @@
-//! Expressions as forces: one for each component of a force on one particle, or a potential energy.
+//! Expressions as forces: one expression for each component of a force on one particle, or a potential energy.
 //!
 //! Force, of positions, velocities and time [N]:
 //!
@@ -7,17 +7,18 @@
 //! −∂F_k/∂x_j − rate ∂F_k/∂v_j     from the gradient of F_k
 //! ```
 //!
-//! Nothing need answer F on the other particles that it depends on, so its stiffness is no symmetric matrix. Methods that solve
-//! at the end of the step take the symmetric part ½ (K + Kᵀ) in their matrix; what is left out costs iterations, not accuracy.
+//! The other particles that F depends on need not feel a force, so the stiffness is no symmetric matrix. Methods that
+//! solve at the end of the step take the symmetric part ½ (K + Kᵀ) in their matrix. The other part costs iterations,
+//! not accuracy.
 //!
 //! Potential, of positions and time [J]:
 //!
 //! ```text
 //! F_i = −∂V/∂x_i,   −∂F_i/∂x_j = ∂²V/∂x_i∂x_j
-//! d(T + V)/dt = ∂V/∂t, the power of who changes V with time     [W]
+//! d(T + V)/dt = ∂V/∂t, the power of an agent that changes V with time     [W]
 //! ```
 //!
-//! Neither has a stiffness of known sign. Where they are not finite the step ends in `StepError`.
+//! Neither has a stiffness of known sign. Where a number is not finite, the step ends in `StepError`.
 
 use super::{Acts, Dependence, ForceError};
 use crate::expression::{Expression, LONGEST_GRADIENT, MAX_NAMES};
@@ -201,10 +202,10 @@ impl Acts for ExpressionPotential {
 }
 
 /// Σ |x|.
-fn sum_of_sizes<const D: usize>(x: Point<D>) -> f64 {
+pub(super) fn sum_of_sizes<const D: usize>(x: Point<D>) -> f64 {
     x.iter().map(|component| component.abs()).sum()
 }
 
-fn largest<const D: usize>(x: Point<D>) -> f64 {
+pub(super) fn largest<const D: usize>(x: Point<D>) -> f64 {
     x.iter().fold(0.0, |most: f64, &component| most.max(component))
 }

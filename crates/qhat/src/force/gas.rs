@@ -1,15 +1,18 @@
-//! A gas inside a closed loop in the plane, or a closed mesh in space: its pressure follows what it fills.
+//! Gas: a gas inside a closed loop in the plane, or a closed mesh in space. Its pressure follows the area or volume A
+//! inside.
 //!
 //! ```text
 //! A = Σ of what the facets enclose (pressure.rs),   p = p₀ (A₀/A)^γ,   p A^γ stays
-//! V = ∫ p dA from A to A₀ = p₀ A₀ ((A₀/A)^(γ−1) − 1)/(γ − 1) = p₀ A₀ expm1((1 − γ) l)/(γ − 1),   l = ln(A/A₀);   −p₀ A₀ l where γ = 1
+//! l = ln(A/A₀),   V = ∫ p dA from A to A₀ = p₀ A₀ ((A₀/A)^(γ−1) − 1)/(γ − 1) = p₀ A₀ expm1((1 − γ) l)/(γ − 1)
+//!                 V = −p₀ A₀ l where γ = 1
 //! F = −∂V/∂x = p ∂A/∂x
 //! −∂F/∂x = −p ∂²A/∂x² + (γ p/A) (∂A/∂x)(∂A/∂x)ᵀ
 //! ```
 //!
-//! γ = 1 keeps the temperature; 7/5 is air that has no time to exchange heat, 5/3 a gas of single atoms; in space these are the usual ones. The last
-//! term couples every two particles of the gas, in methods that solve at the end of the step: hence the bound on their number. A gas keeps
-//! A above 0, with an energy that goes to infinity there where γ ≥ 1; beyond, its numbers are none, and an adaptive method turns back.
+//! γ = 1 keeps the temperature. 7/5 is air that has no time to exchange heat, 5/3 a gas of single atoms; these values
+//! are for space. In methods that solve at the end of the step the last term couples every two particles of the gas:
+//! hence the bound on their number. For γ ≥ 1 the energy goes to infinity at A = 0, so that a gas keeps A above 0.
+//! Beyond A = 0 the numbers are NaN, and an adaptive method rejects the substep.
 
 use super::pressure::Facet;
 use super::{Acts, Dependence, ForceError};
@@ -19,7 +22,7 @@ use crate::point::{Motion, Point, add, norm};
 use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
 
-/// Particles of one gas, at most: every two of them are coupled.
+/// The largest number of particles of one gas: every two of them are coupled.
 const MOST: usize = 200;
 
 /// A gas that a closed loop of edges or a closed mesh of triangles holds.
@@ -36,8 +39,9 @@ pub struct Gas {
 }
 
 impl Gas {
-    /// A gas of this pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q [m], flat, d numbers a particle, where it fills A₀. Edges must go round
-    /// counter-clockwise, and triangles as seen from outside. A particle beyond the positions makes A₀ NaN, which building a system refuses.
+    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q [m], flat, d numbers a
+    /// particle, where it fills A₀. Edges must go round counter-clockwise, and triangles as seen from outside. A
+    /// particle beyond the positions makes A₀ NaN, which building a system refuses.
     pub fn new(facets: Vec<Facet>, pressure: f64, exponent: f64, dimension: Dimension, q: &[f64]) -> Self {
         let mut particles: Vec<ParticleId> = Vec::new();
         let mut corners = Vec::with_capacity(facets.len());
@@ -50,7 +54,7 @@ impl Gas {
                 });
             }
             corners.push(numbers);
-            // What is too large is refused: no need to look for more.
+            // Building a system refuses a larger gas, so the search for particles may end.
             if particles.len() > MOST {
                 break;
             }
@@ -65,7 +69,7 @@ impl Gas {
         gas
     }
 
-    /// What encloses it.
+    /// The facets that enclose the gas.
     pub fn facets(&self) -> &[Facet] {
         &self.facets
     }
@@ -75,10 +79,10 @@ impl Gas {
         self.content
     }
 
-    /// `Ok` if this is a gas that can be.
+    /// `Ok` if the numbers and the facets are those of a gas.
     ///
     /// # Errors
-    /// A pressure, exponent or content that is not positive; too many particles; a facet with a particle at two corners.
+    /// In words: what is wrong with the numbers or the facets.
     pub fn check(&self) -> Result<(), ForceError> {
         positive("the pressure of a gas", self.pressure)?;
         positive("the exponent of a gas", self.exponent)?;

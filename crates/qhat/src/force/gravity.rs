@@ -1,4 +1,4 @@
-//! Uniform gravity.
+//! Gravity: uniform gravity.
 //!
 //! ```text
 //! F_i = m_i g                    [N]

@@ -1,8 +1,8 @@
-//! Force on one particle that swings with time.
+//! HarmonicForce: a force on one particle that swings with time.
 //!
 //! ```text
 //! F = f cos(ω t + φ)             [N]
-//! power = F · v                  [W], of either sign: no potential accounts for what it gives
+//! power = F · v                  [W], of either sign; the force has no potential
 //! ```
 
 use super::{Acts, Dependence, ForceError};
@@ -46,7 +46,7 @@ impl Acts for HarmonicForce {
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
 
-    // The time counts as motion: a force that depends on nothing is asked once a frame.
+    // The time counts as motion: a force that depends on nothing is evaluated once a frame.
     fn dependence(&self) -> Dependence {
         Dependence::Motion
     }

@@ -1,4 +1,5 @@
-//! Inverse-square force between two particles, softened: gravity between masses, electrostatics between charges.
+//! InverseSquare: a softened inverse-square force between two particles: gravity between masses, electrostatics
+//! between charges.
 //!
 //! ```text
 //! d = x_a − x_b,   ρ = √(|d|² + ε²)                     [m]
@@ -7,10 +8,10 @@
 //! −∂F_a/∂x_a = −s/ρ³ I + 3 s ddᵀ/ρ⁵                      [N/m]
 //! ```
 //!
-//! s [N·m²] is −G m_a m_b for masses, which attract, and k q_a q_b for charges. ε [m] is the softening length (Plummer's):
-//! the force is then finite, |F| ≤ 0.385 |s|/ε². With ε = 0 two particles at the same place have no direction: their force is
-//! taken as zero there, and V has no finite value.
-//! The eigenvalues of the stiffness are −s/ρ³ and s (3|d|²/ρ² − 1)/ρ³, neither above 2|s|/ρ³.
+//! s [N·m²] is −G m_a m_b for masses, which attract, and k q_a q_b for charges. ε [m] is the softening length
+//! (Plummer's): the force is then finite, |F| ≤ 0.385 |s|/ε². With ε = 0 two particles at the same place have no
+//! direction. Their force is taken as zero there, and V has no finite value. The eigenvalues of the stiffness are
+//! −s/ρ³ and s (3|d|²/ρ² − 1)/ρ³, neither above 2|s|/ρ³.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};

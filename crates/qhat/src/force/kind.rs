@@ -1,30 +1,30 @@
-//! What every kind of force answers.
+//! Kind: the questions that every kind of force answers, and the types of the answers.
 
 use super::ForceError;
 use crate::point::Motion;
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// What every force answers. `mass` is [kg], one per particle.
+/// The questions that every force answers. `mass` has the mass of each particle [kg].
 pub(crate) trait Acts {
     /// Adds this force to Q.
     fn add<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64], Q: &mut [f64]);
 
-    /// Potential energy [J]; zero for a force that has none.
+    /// Potential energy [J]; zero for a force without a potential.
     fn potential<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64]) -> f64;
 
-    /// Power of the part that no potential accounts for [W]; negative where energy is taken.
+    /// Power of the part that has no potential [W]; negative where it takes energy.
     fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
-    /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with a bound on the row sums of −∂Q/∂q and −∂Q/∂q̇:
-    /// what limits the step of an explicit method.
+    /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with bounds on the row sums of −∂Q/∂q and −∂Q/∂q̇.
+    /// They limit the step of an explicit method.
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
 
-    /// What it changes with, while nothing but the motion goes on.
+    /// The arguments that the force depends on between two changes of its numbers.
     fn dependence(&self) -> Dependence;
 
-    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step, where q̇
-    /// follows q at `rate` [1/s]. Any two particles that it couples must be among those it names.
+    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step,
+    /// where q̇ follows q at `rate` [1/s]. A force may couple only particles that `particles` names.
     fn tangent<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -32,22 +32,22 @@ pub(crate) trait Acts {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     );
 
-    /// The only number of dimensions it fits, if there is one.
+    /// The only number of dimensions that the force has a meaning in; `None` where it has one in both.
     fn dimension(&self) -> Option<usize> {
         None
     }
 
-    /// The particles this force names, each once; empty when it acts on all.
+    /// The particles that the force names, each once; empty if it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// `Ok` if its numbers are in range.
+    /// What is wrong with the numbers of the force, in words.
     fn check(&self) -> Result<(), ForceError>;
 }
 
-/// What a force changes with.
+/// The arguments that a force depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Dependence {
-    /// Nothing: it is the same at every motion.
+    /// None: the force is the same at every motion.
     Nothing,
     /// −coefficient q̇ on every particle [N·s/m].
     Drag(f64),

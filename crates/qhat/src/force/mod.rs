@@ -1,11 +1,12 @@
-//! Applied forces: Q = Σ of every force acting on every particle [N], and the energy each of them stores or takes.
+//! Applied forces: Q = Σ of every force on every particle [N], with the energy that each force stores or takes.
 //!
-//! To add a force: write one file here with `add`, `potential`, `power`, `stiffness` and `tangent`, and name it in the list below.
+//! To add a force, write one file here that implements `Acts`, and name it in the list below.
 
 mod actuator;
 mod air_drag;
 mod central;
 mod cubic_spring;
+mod custom;
 mod drag;
 mod error;
 mod expression;
@@ -27,6 +28,7 @@ pub use actuator::Actuator;
 pub use air_drag::AirDrag;
 pub use central::CentralForce;
 pub use cubic_spring::CubicSpring;
+pub use custom::{CustomForce, CustomPotential};
 pub use drag::Drag;
 pub use error::ForceError;
 pub use expression::{ExpressionForce, ExpressionPotential};
@@ -118,6 +120,8 @@ forces! {
     ExpressionForce,
     /// A potential energy as an expression.
     ExpressionPotential,
+    /// A potential energy written in Rust.
+    CustomForce,
     /// Inverse-square force between one particle and a point.
     CentralForce,
     /// Inverse-square force between two particles: gravity or electrostatics.

@@ -1,4 +1,4 @@
-//! Mouse spring: a damped spring of no length between a particle and the point p that a hand moves.
+//! MouseSpring: a damped spring of no length between a particle and the point p that a hand moves.
 //!
 //! ```text
 //! F = −ks (x − p) − kd v         [N]
@@ -6,7 +6,7 @@
 //! power of the damper = −kd v·v  [W]
 //! ```
 //!
-//! p moves between steps, not within one; the work of moving it is the jump of V (counted by `Simulation`).
+//! p moves between steps, not within one. The work of moving p is the jump of V, which `Simulation` counts.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};

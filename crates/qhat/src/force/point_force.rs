@@ -1,4 +1,4 @@
-//! Constant force on one particle.
+//! PointForce: a constant force on one particle.
 //!
 //! ```text
 //! F = f                          [N]

@@ -1,4 +1,5 @@
-//! Pressure inside a closed loop of edges in the plane, or a closed mesh of triangles in space; one force a facet.
+//! Pressure: pressure inside a closed loop of edges in the plane, or a closed mesh of triangles in space; one force a
+//! facet.
 //!
 //! ```text
 //! edge ab:       A = ½ (x_a y_b − y_a x_b)           V = −p A        F_a = ½ p (y_b, −x_b),   F_b = ½ p (−y_a, x_a)
@@ -6,20 +7,21 @@
 //! −∂F_a/∂x_b:    −½ p [0 1; −1 0]                    ⅙ p [x_c]×
 //! ```
 //!
-//! A and U are the signed area and volume between a facet and the origin, by Gauss's theorem: over a loop that goes round
-//! counter-clockwise, or a mesh whose triangles do as seen from outside, they add up to what is enclosed, and only then does
-//! the origin drop out. At a corner of a loop the force is ½ p times the chord of its two neighbours, turned outward. p is
-//! in N/m in the plane (a pressure times a depth) and in Pa in space. An edge in space acts in the x–y plane; a triangle in
-//! the plane encloses nothing and pushes nowhere.
+//! A and U are the signed area and volume between a facet and the origin, by Gauss's theorem. They add up to the area
+//! or volume inside if the loop goes round counter-clockwise, or the triangles of the mesh do as seen from outside.
+//! Only then does the origin drop out. At a corner of a loop the force is ½ p times the chord of its two neighbours,
+//! turned outward. p is in N/m in the plane (a pressure times a depth) and in Pa in space. An edge in space acts in
+//! the x–y plane. A triangle in the plane encloses nothing, and its force is zero.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::finite;
 use crate::linalg::block::Block;
+use crate::number::{cross, raised};
 use crate::point::{Motion, Point, add, minus, norm};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// A part of what encloses.
+/// One piece of a closed loop or mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
     /// a, b of a loop that goes round counter-clockwise.
@@ -31,7 +33,7 @@ pub enum Facet {
 /// Pressure on one edge of a closed loop or one triangle of a closed mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pressure {
-    /// Where it acts.
+    /// The facet under pressure.
     pub facet: Facet,
     /// p [N/m on an edge, Pa on a triangle], positive where it pushes outward.
     pub pressure: f64,
@@ -93,8 +95,8 @@ impl Facet {
         pressure: f64,
         bound: &mut impl FnMut(ParticleId, f64, f64),
     ) {
-        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far they reach,
-        // not where the origin is. Each triangle answers for its side of the two edges at a corner.
+        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far
+        // they reach, not where the origin is. Each triangle answers for its side of the two edges at a corner.
         match *self {
             Facet::Edge(ends) => ends.into_iter().for_each(|id| bound(id, 0.5 * pressure.abs(), 0.0)),
             Facet::Triangle([a, b, c]) => {
@@ -137,12 +139,7 @@ impl Facet {
 
 /// x of one particle, z = 0 in two dimensions.
 fn place<const D: usize>(motion: Motion<'_, D>, particle: ParticleId) -> Point<3> {
-    let x = motion.x(particle);
-    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
-}
-
-fn cross(a: Point<3>, b: Point<3>) -> Point<3> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    raised(motion.x(particle))
 }
 
 /// The rows and columns of the dimensions there are.

@@ -1,4 +1,5 @@
-//! Damped Hookean spring (the source's external force, its damping sign corrected; method notes, slips).
+//! Spring: a damped Hookean spring (the source's external force with the sign of its damping corrected; method notes,
+//! slips).
 //!
 //! ```text
 //! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
@@ -8,8 +9,8 @@
 //! −∂F_a/∂x_a = ks nnᵀ + [ks (|L| − r) + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
-//! ks [N/m] and kd [N·s/m] are the spring's own, not the feedback coefficients. At |L| = 0 the direction is undefined:
-//! the spring then pulls nowhere (its force is zero), exact for r = 0.
+//! ks [N/m] and kd [N·s/m] belong to the spring and are not the feedback coefficients. At |L| = 0 the direction is
+//! undefined, and the force is zero, which is exact for r = 0.
 
 use super::line::Line;
 use super::{Acts, Dependence, ForceError};
@@ -30,7 +31,7 @@ pub struct Spring {
     pub stiffness: f64,
     /// kd [N·s/m], not negative.
     pub damping: f64,
-    /// r, the length at which it does not pull [m], not negative.
+    /// r, the rest length [m], not negative.
     pub rest: f64,
 }
 
@@ -72,13 +73,14 @@ impl Acts for Spring {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
         let Some(line) = Line::between(motion, self.a, self.b) else {
-            // A spring of no length is linear: the one case in which there is a stiffness without a direction.
+            // A spring of no rest length is linear, and has its stiffness in every direction.
             if self.rest == 0.0 {
                 visit(self.a, self.b, Stiffness::Difference(diagonal(self.stiffness)));
             }
             return;
         };
-        // The damper also depends on q through n; that part is no symmetric matrix, and Newton's method does without it.
+        // The damper also depends on q through n. That part is no symmetric matrix, and Newton's method does without
+        // it.
         let across = (self.stiffness * (line.length - self.rest) + self.damping * line.rate) / line.length;
         let definite = outer(self.stiffness + rate * self.damping, line.n, line.n);
         let geometric = line.across(across);

@@ -1,7 +1,8 @@
-//! Every kind of force against differences: Q against the potential, the tangent and the bound on it against Q, the power
+//! Every kind of force against differences: Q against the potential, the tangent and its bound against Q, the power
 //! against both.
 
 use super::*;
+use crate::hyper::Hyper;
 use crate::linalg::block::{diagonal, outer, plus, transposed};
 use crate::space::Dimension;
 
@@ -69,12 +70,19 @@ fn cases<const D: usize>() -> Vec<Case> {
         case("cubic", cubic, true),
         case("torsion", torsion(1.1), true),
         case("straight", torsion(std::f64::consts::PI), true),
+        case("custom", CustomForce::new([c, a, d], hills), true),
         Case { name: "ring", forces: ring, is_conservative: true },
         Case { name: "mesh", forces: mesh, is_conservative: true },
         gas("gas", edges(), 1.4),
         gas("gas of one temperature", edges(), 1.0),
     ];
     all.into_iter().chain(in_space).collect()
+}
+
+/// A potential of three particles.
+fn hills(x: &[[Hyper; 3]], _: Hyper) -> Hyper {
+    let [c, a, d] = [x[0], x[1], x[2]];
+    (c[0] * a[1]).sin() + (c[1] - d[0]).powi(2) * a[0] + d[1].exp() * c[2].cos()
 }
 
 const MASS: [f64; PARTICLES] = [0.7, 1.2, 0.5, 2.0];

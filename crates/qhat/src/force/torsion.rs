@@ -1,4 +1,4 @@
-//! Damped torsion spring at a hinge b between the arms to a and c.
+//! TorsionSpring: a damped torsion spring at a hinge b between the arms to a and c.
 //!
 //! ```text
 //! u = x_a − x_b,   w = x_c − x_b,   θ from u to w          [m, rad]
@@ -8,22 +8,23 @@
 //! −∂F/∂q − rate ∂F/∂q̇ = (k + rate kd) ∇θ∇θᵀ + k Δ ∇²θ + …   [N/m]
 //! ```
 //!
-//! In the plane θ is signed, positive counter-clockwise, and Δ is taken within (−π, π] by turning u by θ₀ first: the arms may
-//! pass through straight, and V has its kink where the hinge is bent π away from rest. With ⊥(x, y) = (−y, x):
+//! In the plane θ is signed, positive counter-clockwise. Δ is taken within (−π, π] by turning u by θ₀ first: the arms
+//! may pass through straight, and V has its kink where the hinge is bent π away from rest. With ⊥(x, y) = (−y, x):
 //!
 //! ```text
 //! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|², ∂²θ/∂u² its opposite with u, mixed zero
 //! ```
 //!
-//! In space θ is unsigned, in [0, π]. With n_u, n_w the units across each arm towards the other, m the normal of both arms:
+//! In space θ is unsigned, in [0, π]. n_u and n_w are the unit vectors across each arm towards the other, m the
+//! normal of both arms:
 //!
 //! ```text
 //! ∂θ/∂u = −n_u/|u|,   ∂²θ/∂u² = [û n_uᵀ + n_u ûᵀ + cot θ mmᵀ]/|u|²,   ∂²θ/∂u∂w = −mmᵀ/(sin θ |u||w|); w alike
 //! ```
 //!
-//! Straight (θ = π) or folded (0) arms in space have no n. At rest there (θ₀ = π, 0) the limit is an isotropic spring, of
-//! which any n is right; otherwise the force, which is finite beside it, is taken as zero. An arm of no length has no angle:
-//! the force is zero, V that of θ = 0, and beside it the force grows as 1/|u|.
+//! Straight (θ = π) or folded (0) arms in space have no n. At rest there (θ₀ = π, 0) the limit is an isotropic
+//! spring, of which any n is right. Otherwise the force, which is finite beside that place, is taken as zero. An arm
+//! of no length has no angle: the force is zero, V is that of θ = 0, and near there the force grows as 1/|u|.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
@@ -46,11 +47,12 @@ pub struct TorsionSpring {
     pub stiffness: f64,
     /// kd [N·m·s/rad], not negative.
     pub damping: f64,
-    /// θ₀ [rad]: −π to π in the plane, from the first arm counter-clockwise to the second; 0 to π in space. π is straight.
+    /// θ₀ [rad]: −π to π in the plane, counter-clockwise from the first arm to the second; 0 to π in space. π is
+    /// straight.
     pub angle: f64,
 }
 
-/// One arm: its direction, length, the unit across it in which θ changes most, and the sign of that.
+/// One arm: its direction, its length, the unit vector across it in which θ changes most, and the sign of that change.
 struct Arm<const D: usize> {
     along: Point<D>,
     length: f64,
@@ -71,7 +73,7 @@ impl<const D: usize> Arm<D> {
     }
 }
 
-/// The hinge as it is: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane.
+/// The hinge at one motion: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane.
 struct Bend<const D: usize> {
     delta: f64,
     u: Arm<D>,
@@ -199,7 +201,8 @@ impl Acts for TorsionSpring {
                 visit(first, second, Stiffness::Definite(outer(along, g, other)));
             }
         }
-        // The damper also depends on q through ∇θ; that part is no symmetric matrix, and Newton's method does without it.
+        // The damper also depends on q through ∇θ. That part is no symmetric matrix, and Newton's method does without
+        // it.
         let torque = self.stiffness * bend.delta + self.damping * Self::rate(motion, &gradient);
         let (mut uu, mut ww, mut uw) = (zero(), zero(), zero());
         uu = plus(uu, torque, bend.u.curvature());

@@ -1,13 +1,12 @@
-//! What a Runge–Kutta method integrates: q̈ as a function of q, q̇ and t, and the way back onto the constraints.
+//! Field: q̈ as a function of q, q̇ and t for a Runge–Kutta method, and the projection onto the constraints.
 //!
-//! Positions and velocities stand in blocks of eight numbers, in an order of the field's own: eight stretches of chain side by
-//! side, or the user's order filled up with zeros. The method adds and scales them without knowing which.
+//! Positions and velocities are in blocks of eight numbers, in an order of the field's own: eight stretches of chain
+//! side by side, or the user's order filled up with zeros. The method adds and scales blocks without knowing which.
 
 use super::Workspace;
 use super::projection::largest;
 use crate::chains::{Chains, Projected};
-use crate::drift::{Drift, drift};
-use crate::drift::{attainable, worst_row};
+use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
 use crate::multiplier::SolveFor;
@@ -17,10 +16,11 @@ use crate::state::State;
 use crate::structure::ChainPlan;
 use crate::system::System;
 
-/// Newton's method with the factor of the last stage gains two to four digits an iteration on what is a small correction.
+/// Newton iterations of one projection. With the factor of the last stage each gains two to four digits, and the
+/// correction is small.
 const MAX_ITERATIONS: usize = 8;
 
-/// Power of what no potential accounts for [W].
+/// Power that no potential accounts for [W].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
     pub(super) dissipation: f64,
@@ -28,39 +28,39 @@ pub(super) struct Power {
     pub(super) drives: f64,
 }
 
-/// q̈(q, q̇, t) in an order of its own.
+/// q̈(q, q̇, t), in an order of its own. The two implementations are [`GeneralField`] and [`ChainField`].
 pub(super) trait Field {
     /// How many blocks of eight numbers q has.
     fn blocks(&self) -> usize;
 
-    /// Lays the state out.
+    /// Writes the state to blocks.
     fn begin(&mut self, state: &State, q: &mut [F8], qd: &mut [F8]);
 
-    /// Writes it back.
+    /// Writes blocks back to the state.
     fn end(&self, q: &[F8], qd: &[F8], state: &mut State);
 
-    /// Writes q̈; `None` where the field cannot tell, because rows depend on each other.
+    /// Writes q̈. `None` if A is singular on this path; the caller falls back to the general one.
     fn accelerate(&mut self, q: &[F8], qd: &[F8], t: f64, qdd: &mut [F8]) -> Option<Power>;
 
-    /// Brings q onto C = 0 and q̇ onto Ċ = 0 at the time t: the number of iterations.
+    /// Projects q onto C = 0 and q̇ onto Ċ = 0 at the time t; says whether that was possible, and its iterations.
     fn project(&mut self, q: &mut [F8], qd: &mut [F8], t: f64, settings: &Settings) -> Projected;
 
-    /// What is left of C = 0 and Ċ = 0, of what was projected last.
+    /// The residuals of C = 0 and Ċ = 0 that the last projection left.
     fn drift(&self, q: &[F8], qd: &[F8]) -> Drift;
 
-    /// What was projected last is given up; the motion before it will be asked for again.
+    /// Gives up the motion projected last: the next call of `accelerate` is at the motion before it.
     fn turn_back(&mut self);
 
-    /// 1 where block k of the coordinates is to be counted, 0 in copies.
+    /// 1 where a number of block k counts in the error estimate, 0 in copies of particles.
     fn counted(&self, k: usize) -> F8;
 }
 
-/// Any system, in the user's order, by the general path.
+/// Any system, in the user's order, by the equation of `multiplier/`.
 pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) system: &'a System,
     pub(super) workspace: &'a mut Workspace,
     pub(super) feedback: Feedback,
-    /// Whether the factor at hand is that of the motion that will be asked for next.
+    /// Whether the factor at hand is that of A at the next call of `accelerate`.
     pub(super) is_factored: bool,
 }
 
@@ -150,7 +150,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
     }
 }
 
-/// Open chains, in chains.
+/// Open chains, by the equation of `chains/`.
 pub(super) struct ChainField<'a, const D: usize> {
     pub(super) system: &'a System,
     pub(super) plan: &'a ChainPlan,

@@ -1,12 +1,24 @@
-//! From one state to the next: one method a file.
+//! From one state to the next.
 //!
-//! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in `step_for`.
+//! | folder | methods |
+//! |---|---|
+//! | `fixed/` | steps of exactly h: Euler, semi-implicit Euler, RK4 |
+//! | `adaptive/` | substeps by an error estimate: the frame loop, and the pairs DOPRI5 and DOP853 |
+//! | `implicit/` | steps solved at their end: backward Euler, BDF2 |
+//! | `events/` | the pairs on a system with contacts: substeps that end at events |
+//!
+//! `rattle.rs` is RATTLE in the frame loop, `auto.rs` chooses between DOP853 and BDF2, `projection.rs` makes a start
+//! consistent. `runge_kutta/` and `field.rs` are shared by all Runge–Kutta methods.
+//!
+//! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in
+//! `step_for`.
 
 mod adaptive;
 mod auto;
 mod events;
 mod field;
 mod fixed;
+mod frame;
 mod implicit;
 mod projection;
 mod rattle;
@@ -25,12 +37,13 @@ use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
 use adaptive::{dop853, dopri5, pair};
+use frame::Frame;
 
-/// Carries a state over one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
+/// Advances a state by one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
 ///
 /// # Errors
-/// See [`StepError`]. The state is then the last good one: where the step began, or for an adaptive integrator the end of
-/// its last substep.
+/// See [`StepError`]. The state is then the last good one: where the step began, or for an adaptive integrator the
+/// end of its last substep.
 pub fn step(
     system: &System,
     state: &mut State,
@@ -45,25 +58,24 @@ pub(crate) fn step_for(
     system: &System,
     state: &mut State,
     settings: &Settings,
-    frame: f64,
+    length: f64,
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     settings.check()?;
     check_switches(system, settings)?;
+    let frame = &mut Frame { system, settings, workspace, length };
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
-        Integrator::Euler => fixed::run::<D>(system, state, frame, workspace, fixed::euler::step::<D>),
-        Integrator::SymplecticEuler => fixed::run::<D>(system, state, frame, workspace, fixed::symplectic_euler::step::<D>),
-        Integrator::Rk4 => fixed::run::<D>(system, state, frame, workspace, fixed::rk4::step::<D>),
-        Integrator::Auto => auto::frame::<D>(system, state, settings, frame, workspace),
-        Integrator::Rattle => rattle::frame::<D>(system, state, settings, frame, workspace),
-        Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, system, state, settings, frame, workspace),
-        Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, system, state, settings, frame, workspace),
-        Integrator::Implicit => {
-            implicit::frame::<D>(&implicit::backward_euler::BACKWARD_EULER, system, state, settings, frame, workspace)
-        }
-        Integrator::Bdf2 => implicit::frame::<D>(&implicit::bdf2::BDF2, system, state, settings, frame, workspace),
+        Integrator::Euler => fixed::run::<D>(frame, state, fixed::euler::step::<D>),
+        Integrator::SymplecticEuler => fixed::run::<D>(frame, state, fixed::symplectic_euler::step::<D>),
+        Integrator::Rk4 => fixed::run::<D>(frame, state, fixed::rk4::step::<D>),
+        Integrator::Auto => auto::frame::<D>(frame, state),
+        Integrator::Rattle => rattle::frame::<D>(frame, state),
+        Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, frame, state),
+        Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, frame, state),
+        Integrator::Implicit => implicit::frame::<D>(&implicit::backward_euler::BACKWARD_EULER, frame, state),
+        Integrator::Bdf2 => implicit::frame::<D>(&implicit::bdf2::BDF2, frame, state),
     })?;
-    // Those that may leave a frame to another say themselves who carried it.
+    // Integrators that may leave a frame to another one report which of them advanced it.
     let integrator = match settings.integrator {
         Integrator::Auto | Integrator::Rattle => report.integrator,
         own => own,
@@ -71,7 +83,7 @@ pub(crate) fn step_for(
     Ok(StepReport { integrator, ..report })
 }
 
-/// Refuses an integrator that cannot find events, where there are some to find.
+/// Refuses an integrator that locates no events, for a system that has some.
 pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(), StepError> {
     let first = system.contacts.list.first().map(|contact| contact.constraint);
     match first.or(system.contacts.breakables.first().map(|breakable| breakable.constraint)) {
@@ -83,8 +95,8 @@ pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(),
     }
 }
 
-/// Whether a simulation can start from a state as it is: that the integrator finds the events that there are, and that no contact or
-/// limit is violated by more than it may be off where it holds.
+/// Whether a simulation can start from a state as it is: the integrator locates the events that the system has, and no
+/// contact or limit is violated beyond the tolerance of a closed one.
 ///
 /// # Errors
 /// [`StepError::NoEvents`]; [`StepError::Penetrates`], of the constraint that is violated most.
@@ -106,8 +118,8 @@ pub fn check_start(system: &System, state: &State, settings: &Settings) -> Resul
     }
 }
 
-/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric. Nothing moves if it is consistent already. What is taut or
-/// lies on something is closed.
+/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric, and closes taut ropes and contacts at
+/// rest. A consistent state does not move.
 ///
 /// # Errors
 /// [`StepError::NotSatisfied`] where no such positions are found; the state stays as it was.
@@ -118,7 +130,7 @@ pub fn project(
     workspace: &mut Workspace,
 ) -> Result<Projection, StepError> {
     settings.check()?;
-    workspace.factored_at.clear();
+    workspace.equation.solver.memory.forget();
     in_dimension!(system.dimension, D => {
         let projection = projection::project::<D>(system, state, settings, workspace)?;
         if !system.contacts.list.is_empty() {

@@ -5,8 +5,8 @@
 //! q̇ ← q̇ − W Jᵀ A⁻¹ Ċ,  Ċ = J q̇ + C_t
 //! ```
 //!
-//! Newton's method with the step halved while it does not bring the constraints nearer. Fails where no q satisfies them, or
-//! where the start is too far away.
+//! Newton's method, with the step halved while it does not bring the constraints nearer. It fails where no q satisfies
+//! them, or where the start is too far away.
 
 use super::Workspace;
 use crate::drift::{attainable, worst_row};
@@ -19,15 +19,16 @@ use crate::space::ParticleId;
 use crate::state::State;
 use crate::system::System;
 
-/// Newton converges quadratically, in some five iterations; from far away it takes more.
+/// Newton's method converges quadratically, in some five iterations; from far away it takes more.
 const MAX_ITERATIONS: usize = 60;
 
 /// Halvings of one Newton step.
 const MAX_HALVINGS: usize = 12;
 
-/// |Ċ| below this times the fastest particle's speed is roundoff, not inconsistency.
+/// |Ċ|, relative to the speed of the fastest particle, below which it is roundoff.
 const CONSISTENT_RATE: f64 = 1e-13;
 
+/// Projects a state; a state that is consistent to tolerance does not move.
 pub(super) fn project<const D: usize>(
     system: &System,
     state: &mut State,
@@ -38,8 +39,9 @@ pub(super) fn project<const D: usize>(
     let Workspace { equation, q, qd, .. } = workspace;
     q.copy_from_slice(&state.q);
     qd.copy_from_slice(&state.qd);
-    let (residual_before, iterations) = positions::<D>(system, state.t, settings, equation, q, qd)?;
-    velocities::<D>(system, state.t, equation, q, qd);
+    let mut projector = Projector::<D> { system, settings, equation, t: state.t, q, qd };
+    let (residual_before, iterations) = projector.positions()?;
+    projector.velocities();
     let report = Projection {
         moved: farthest::<D>(q, &state.q),
         velocity_changed: farthest::<D>(qd, &state.qd),
@@ -54,72 +56,93 @@ pub(super) fn project<const D: usize>(
     Ok(report)
 }
 
-/// Brings q onto C = 0; returns max |C| before and the number of iterations.
-fn positions<const D: usize>(
-    system: &System,
+/// A motion on its way onto the constraints.
+struct Projector<'a, const D: usize> {
+    system: &'a System,
+    settings: &'a Settings,
+    equation: &'a mut Equation,
     t: f64,
-    settings: &Settings,
-    equation: &mut Equation,
-    q: &mut [f64],
-    qd: &[f64],
-) -> Result<(f64, usize), StepError> {
-    equation.constrain(system, Motion::<D> { q, qd, t });
-    let before = (0..equation.rows.C.len())
-        .filter(|&row| system.softness[row].is_rigid())
-        .fold(0.0, |most: f64, row| most.max(equation.rows.C[row].abs()));
-    let mut delta = vec![0.0; equation.rows.C.len()];
-    let mut start = q.to_vec();
-    for iteration in 0..MAX_ITERATIONS {
-        let off = worst_row(system, &equation.rows.C).1;
-        if off <= attainable(system, settings, largest(q)) {
-            return Ok((before, iteration));
-        }
-        equation.factor::<D>(system, 0.0);
-        equation.solver.solve(&system.matrix, &equation.rows.C, SolveFor::Correction, &mut delta);
-        let J = equation.rows.J.clone();
-        start.copy_from_slice(q);
-        let mut fraction = 1.0;
-        for _ in 0..MAX_HALVINGS {
-            q.copy_from_slice(&start);
-            J.add_impulse::<D>(&system.inverse_mass, &delta, -fraction, q);
-            equation.constrain(system, Motion::<D> { q, qd, t });
-            if worst_row(system, &equation.rows.C).1 < off {
+    q: &'a mut [f64],
+    qd: &'a mut [f64],
+}
+
+impl<const D: usize> Projector<'_, D> {
+    /// Brings q onto C = 0; returns max |C| before and the number of iterations.
+    fn positions(&mut self) -> Result<(f64, usize), StepError> {
+        let (system, m) = (self.system, self.system.row_count());
+        self.constrain();
+        let rigid = (0..m).filter(|&row| system.softness[row].is_rigid());
+        let before = rigid.fold(0.0, |most: f64, row| most.max(self.equation.rows.C[row].abs()));
+        let mut delta = vec![0.0; m];
+        let mut start = self.q.to_vec();
+        for iteration in 0..MAX_ITERATIONS {
+            let off = self.off();
+            if self.is_met(off) {
+                return Ok((before, iteration));
+            }
+            self.equation.factor::<D>(system, 0.0);
+            self.equation.solver.solve(&system.matrix, &self.equation.rows.C, SolveFor::Correction, &mut delta);
+            let J = self.equation.rows.J.clone();
+            start.copy_from_slice(self.q);
+            let mut fraction = 1.0;
+            for _ in 0..MAX_HALVINGS {
+                self.q.copy_from_slice(&start);
+                J.add_impulse::<D>(&system.inverse_mass, &delta, -fraction, self.q); // q − W Jᵀ A⁻¹ C
+                self.constrain();
+                if self.off() < off {
+                    break;
+                }
+                fraction *= 0.5;
+            }
+            if self.off() >= off {
                 break;
             }
-            fraction *= 0.5;
         }
-        if worst_row(system, &equation.rows.C).1 >= off {
-            break;
+        let (row, off) = worst_row(system, &self.equation.rows.C);
+        let residual = self.equation.rows.C.get(row).copied().unwrap_or(0.0);
+        if self.is_met(off) {
+            return Ok((before, MAX_ITERATIONS));
+        }
+        Err(StepError::NotSatisfied { time: self.t, row: system.row_names[row].clone(), residual })
+    }
+
+    /// Takes Ċ out of q̇, unless it is roundoff.
+    fn velocities(&mut self) {
+        self.constrain();
+        let Projector { system, equation, qd, .. } = self;
+        let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
+        let fastest = fastest.fold(0.0, f64::max).sqrt();
+        let rows = equation.rows.Cd.iter().zip(&system.row_scale);
+        let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, f64::max);
+        if rate * system.extent > CONSISTENT_RATE * fastest {
+            equation.factor::<D>(system, 0.0);
+            let mut nu = vec![0.0; equation.rows.Cd.len()];
+            equation.solver.solve(&system.matrix, &equation.rows.Cd, SolveFor::Force, &mut nu);
+            equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, qd); // q̇ − W Jᵀ A⁻¹ Ċ
         }
     }
-    let (row, _) = worst_row(system, &equation.rows.C);
-    let residual = equation.rows.C.get(row).copied().unwrap_or(0.0);
-    if worst_row(system, &equation.rows.C).1 <= attainable(system, settings, largest(q)) {
-        return Ok((before, MAX_ITERATIONS));
+
+    fn constrain(&mut self) {
+        let Projector { system, equation, t, q, qd, .. } = self;
+        equation.constrain(system, Motion::<D> { q, qd, t: *t });
     }
-    Err(StepError::NotSatisfied { time: t, row: system.row_names[row].clone(), residual })
+
+    /// The largest |C| of the rigid rows, over the row's scale.
+    fn off(&self) -> f64 {
+        worst_row(self.system, &self.equation.rows.C).1
+    }
+
+    fn is_met(&self, off: f64) -> bool {
+        off <= attainable(self.system, self.settings, largest(self.q))
+    }
 }
 
-/// Takes out of q̇ what would violate Ċ = 0; nothing if it is roundoff.
-fn velocities<const D: usize>(system: &System, t: f64, equation: &mut Equation, q: &[f64], qd: &mut [f64]) {
-    equation.constrain(system, Motion::<D> { q, qd, t });
-    let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
-    let fastest = fastest.fold(0.0, f64::max).sqrt();
-    let rows = equation.rows.Cd.iter().zip(&system.row_scale);
-    let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, f64::max);
-    if rate * system.extent > CONSISTENT_RATE * fastest {
-        equation.factor::<D>(system, 0.0);
-        let mut nu = vec![0.0; equation.rows.Cd.len()];
-        equation.solver.solve(&system.matrix, &equation.rows.Cd, SolveFor::Force, &mut nu);
-        equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, qd);
-    }
-}
-
-/// max |x|.
+/// max |x|, without entries that are not a number.
 pub(super) fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
+/// The largest distance between two blocks of D numbers.
 fn farthest<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
     let distances = a.chunks_exact(D).zip(b.chunks_exact(D));
     distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, f64::max).sqrt()

@@ -1,10 +1,10 @@
 //! Cutting a connected graph in two of about the same size with few edges cut.
 //!
-//! The graph is looked at from four landmarks that lie far apart. The hops to a landmark, and the differences of the hops to
-//! two, serve as coordinates: on a net the difference of two corners runs straight along one side. Along each coordinate the
-//! best place to cut is taken, and the best cut of all is refined by moving single vertices over it.
-//! Sources: Harel and Koren, Graph drawing by high-dimensional embedding (2002), for the landmarks; Fiduccia and Mattheyses,
-//! A linear-time heuristic for improving network partitions (1982), for the refinement.
+//! The graph is looked at from four landmarks that lie far apart. The hops to a landmark, and the differences of the
+//! hops to two, serve as coordinates: on a net the difference of two corners runs straight along one side. Along each
+//! coordinate the best place to cut is taken, and the best cut of all is refined by moving single vertices over it.
+//! Sources: Harel and Koren, Graph drawing by high-dimensional embedding (2002), for the landmarks; Fiduccia and
+//! Mattheyses, A linear-time heuristic for improving network partitions (1982), for the refinement.
 
 use std::collections::BTreeSet;
 

@@ -89,8 +89,8 @@ pub(crate) fn vector<const D: usize>(flat: &[f64], i: usize) -> [f64; D] {
     std::array::from_fn(|k| numbers[k])
 }
 
-/// A = L D Lᵀ of a symmetric positive definite block: L (unit lower) below the diagonal and 1/D on it; what is above means
-/// nothing. `None` where a pivot does not exceed `least`.
+/// A = L D Lᵀ of a symmetric positive definite block: L (unit lower) below the diagonal and 1/D on it; entries above
+/// the diagonal are not used. `None` if a pivot does not exceed `least`.
 #[inline(always)]
 pub(crate) fn ldl<const D: usize>(A: &Block<D>, least: f64) -> Option<Block<D>> {
     let mut factor = *A;

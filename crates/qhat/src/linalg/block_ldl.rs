@@ -1,12 +1,13 @@
-//! Sparse LDLᵀ of a symmetric positive definite matrix of D × D blocks, row of blocks after row of blocks ("up-looking"), in
-//! a minimum degree order of the blocks.
+//! Sparse LDLᵀ of a symmetric positive definite matrix of D × D blocks, row of blocks after row of blocks
+//! ("up-looking"), in a minimum degree order of the blocks.
 //!
 //! ```text
 //! Y_i = (A_ki − Σ_{j<i} Y_j L_ijᵀ) L_ii⁻ᵀ,   L_ki = Y_i D_i⁻¹,   L_kk D_k L_kkᵀ = A_kk − Σ_{i<k} L_ki Y_iᵀ
 //! ```
 //!
-//! D is diagonal and L_kk unit lower: number for number the factorization of the matrix without its blocks. An inverted block
-//! pivot would not do, a penalty of 1e8 beside 1 costs it all its digits. Source: Davis, Algorithm 849, ACM TOMS 31 (2005), with blocks for numbers.
+//! D is diagonal and L_kk unit lower, so the factor has the numbers of the scalar factorization. An inverted block
+//! pivot is not used: beside a penalty of 1e8 it loses all its digits. Source: Davis, Algorithm 849, ACM TOMS 31
+//! (2005), with blocks in place of numbers.
 
 use super::block::{
     Block, backward, divide, forward, ldl, load, plus, product_transposed, store, times, transposed, transposed_times,
@@ -54,7 +55,7 @@ impl BlockLdl {
         let find = |node: usize| local.get(node).copied().flatten();
         let inside: Vec<(usize, usize, usize)> =
             edges.iter().enumerate().filter_map(|(edge, &(a, b))| Some((find(a)?, find(b)?, edge))).collect();
-        // A node is an unknown here, and what two of them share is an edge.
+        // A node is an unknown of the incidence, and an edge is a point that two unknowns share.
         let mut touching: Vec<Vec<u32>> = vec![Vec::new(); n];
         for (shared, &(a, b, _)) in inside.iter().enumerate() {
             touching[a].push(shared as u32);
@@ -81,7 +82,7 @@ impl BlockLdl {
         factor
     }
 
-    /// Which blocks of L are not zero: the elimination tree gives the columns of each row.
+    /// Finds the blocks of L that are not zero: the elimination tree gives the columns of each row.
     fn find_rows(&mut self, dimension: usize) {
         const NONE: usize = usize::MAX;
         let n = self.order.len();

@@ -1,13 +1,14 @@
-//! Nested dissection: cut the graph of points in two, eliminate the unknowns of either half, and those that were cut last.
+//! Nested dissection: cut the graph of points in two, eliminate the unknowns of either half, and last the unknowns that
+//! were cut.
 //!
-//! Source: George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973); with the cut unknowns
-//! themselves as the separator, since here an unknown is an edge and a point a vertex.
+//! Source: George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973); with the cut
+//! unknowns themselves as the separator, since here an unknown is an edge and a point a vertex.
 
 use super::Incidence;
 use super::bisection::{Graph, bisect};
 use super::ordering::minimum_degree;
 
-/// Parts up to this many unknowns are ordered by minimum degree: from 30 to 100, nets took the same time within 3 %.
+/// Largest part that is ordered by minimum degree [unknowns]: between 30 and 100, nets took the same time within 3 %.
 const SMALL: usize = 70;
 
 /// The order of elimination of all unknowns.
@@ -97,7 +98,7 @@ impl Dissection<'_> {
         Graph { start, to }
     }
 
-    /// Minimum degree, where the unknowns around that come later count as neighbours.
+    /// Minimum degree of a part; the unknowns around it, which come later, count as neighbours.
     fn order_small(&mut self, unknowns: &[u32]) {
         let mut with_rim = unknowns.to_vec();
         for &u in unknowns {

@@ -1,7 +1,7 @@
 //! Eight numbers that go through the same arithmetic side by side: [`F8`] in memory, [`Wide`] in registers.
 //!
-//! Every operation is that of one f64 and rounds once, so the bits do not depend on how many numbers a vector unit takes at a
-//! time: which one is chosen as the program runs.
+//! Every operation is that of one f64 and rounds once, so the bits do not depend on how many numbers a vector unit
+//! takes at a time: which one is chosen as the program runs.
 
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -24,13 +24,13 @@ impl F8 {
         F8([value; LANES])
     }
 
-    /// Every lane gets what the lane before it had; the first gets the last's.
+    /// Every lane takes the value of the lane before it; the first takes that of the last.
     #[inline(always)]
     pub(crate) fn shifted_up(self) -> F8 {
         F8(std::array::from_fn(|k| self.0[(k + LANES - 1) % LANES]))
     }
 
-    /// Every lane gets what the lane after it had; the last gets the first's.
+    /// Every lane takes the value of the lane after it; the last takes that of the first.
     #[inline(always)]
     pub(crate) fn shifted_down(self) -> F8 {
         F8(std::array::from_fn(|k| self.0[(k + 1) % LANES]))
@@ -55,8 +55,9 @@ pub(crate) fn vector_unit() -> Arch {
     Arch::new()
 }
 
-/// Smaller numbers of SI units are set to zero where elimination lets them decay from row to row: a chain of a thousand links
-/// would reach numbers below 1e-308, on which processors are a hundred times slower. Its square is still a normal number.
+/// Numbers below this size are set to zero where elimination lets them decay from row to row [SI units]. In a chain of
+/// a thousand links they would fall below 1e-308, and processors are a hundred times slower on such numbers. The square
+/// of this limit is still a normal number.
 const NEGLIGIBLE: f64 = 1e-140;
 
 /// Eight numbers in as many registers as the vector unit needs. `S` is that unit.
@@ -119,7 +120,7 @@ impl<S: Simd> Wide<S> {
             other,
             #[inline(always)]
             |simd, a, b| {
-                // What is not less than or equal to b stays: a if larger, a if NaN. Where b is NaN it is taken.
+                // a where a ≥ b, else b; b where b is NaN. The second select keeps a where a is NaN.
                 let keep = simd.select_f64s(simd.greater_than_or_equal_f64s(a, b), a, b);
                 simd.select_f64s(simd.equal_f64s(a, a), keep, a)
             },

@@ -1,8 +1,8 @@
-//! What elimination in a given order leads to: the elimination tree, the entries of L, and the columns that go together.
+//! Symbolic elimination in a given order: the elimination tree, the entries of L, and the columns that form fronts.
 //!
-//! Column j of L has its first entry below the diagonal in row parent(j). The columns of a *front* are eliminated as one dense
-//! block. Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. 11 (1990); Ashcraft and
-//! Grimes, The influence of relaxed supernode partitions on the multifrontal method, ACM TOMS 15 (1989).
+//! Column j of L has its first entry below the diagonal in row parent(j). The columns of a *front* are eliminated as
+//! one dense block. Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. 11 (1990);
+//! Ashcraft and Grimes, The influence of relaxed supernode partitions on the multifrontal method, ACM TOMS 15 (1989).
 
 use super::Incidence;
 
@@ -66,7 +66,7 @@ impl Elimination {
             let mut front = Front { columns: vec![j as u32], below: self.below[j], zeros: 0 };
             let mut kept = Vec::new();
             let mut sons = std::mem::take(&mut waiting[j]);
-            // The son that fits best first: what it brings decides about the others.
+            // The best fitting child comes first: its rows decide whether the others are worth merging.
             sons.sort_by_key(|&s| (std::cmp::Reverse(fronts[s as usize].below), s));
             for s in sons {
                 match fronts[s as usize].merged(&front) {
@@ -104,7 +104,7 @@ struct Front {
 }
 
 impl Front {
-    /// This front and its parent as one, if that is worth the zeros it brings.
+    /// This front merged with its parent, if the merger is worth the zeros that it stores.
     fn merged(&self, parent: &Front) -> Option<Front> {
         let (k, up) = (self.columns.len() as u64, parent.columns.len() as u64);
         // The rows of a front lie among the columns and rows of its parent.
@@ -112,7 +112,7 @@ impl Front {
         let columns = k + up;
         let entries = columns * (columns + 1) / 2 + columns * u64::from(parent.below);
         let share = zeros as f64 / entries as f64;
-        // Measured on nets of 32 to 316: half and twice of these cost within 5 % of the same.
+        // On nets of 32 to 316 a side, half and twice these numbers cost within 5 % of the same.
         let allowed = match columns {
             ..=8 => 0.4,
             9..=16 => 0.2,

@@ -1,8 +1,9 @@
-//! The fronts of a multifrontal factorization: which rows each has, and what goes where.
+//! The fronts of a multifrontal factorization: the rows of each front and the positions of its entries.
 //!
-//! A front holds k columns that are eliminated together, and r rows below them. Its part of L is stored in blocks of eight
-//! rows, the columns of a block one after the other; both the k and the r rows begin a block. What elimination leaves for the
-//! rows below (the *update*, r × r) waits on one of two stacks, in turns with the depth in the tree, until the parent takes it.
+//! A front holds k columns that are eliminated together, and r rows below them. Its part of L is stored in blocks of
+//! eight rows, the columns of a block one after the other; both the k and the r rows begin a block. The Schur
+//! complement that elimination leaves for the rows below (the *update*, r × r) waits on one of two stacks, which
+//! alternate with the depth in the tree, until the parent adds it.
 
 use super::Lower;
 use super::elimination::NONE;
@@ -19,11 +20,11 @@ pub(crate) struct Front {
     pub(crate) rows: Range<usize>,
     /// Its part of L, in columns of eight rows.
     pub(crate) l: Range<usize>,
-    /// Which stack its update waits on, and where, in columns of eight rows.
+    /// The stack of its update, and its offset there in columns of eight rows.
     pub(crate) stack: usize,
     pub(crate) update: Range<usize>,
     pub(crate) children: Range<usize>,
-    /// What is read from A, in `FrontPlan::entries`.
+    /// The entries of A that it takes, in `FrontPlan::entries`.
     pub(crate) entries: Range<usize>,
 }
 
@@ -47,7 +48,7 @@ impl Front {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrontPlan {
-    /// The rows of the matrix that are factored so.
+    /// The rows of the matrix that are factored in fronts.
     pub(crate) range: Range<usize>,
     /// Children before parents.
     pub(crate) fronts: Vec<Front>,
@@ -56,7 +57,7 @@ pub(crate) struct FrontPlan {
     /// The same as places in the parent's front.
     pub(crate) places: Vec<u32>,
     pub(crate) children: Vec<u32>,
-    /// Where a value of A comes from, and where it goes in its front's part of L.
+    /// The slot of a value of A, and its position in its front's part of L.
     pub(crate) entries: Vec<(u32, u32)>,
     pub(crate) l_len: usize,
     pub(crate) stack_len: [usize; 2],
@@ -107,7 +108,7 @@ impl FrontPlan {
         plan
     }
 
-    /// [bytes]
+    /// Memory of L [bytes].
     #[cfg(test)]
     pub(crate) fn memory(&self) -> usize {
         let numbers = self.l_len + self.stack_len[0] + self.stack_len[1];
@@ -146,7 +147,7 @@ impl FrontPlan {
         self.fronts.push(front);
     }
 
-    /// Where the rows of each front are in its parent's.
+    /// Finds the positions of the rows of each front in its parent.
     fn place_rows(&mut self, parent: &[u32]) {
         self.places = vec![0; self.rows.len()];
         for (f, front) in self.fronts.iter().enumerate() {
@@ -170,7 +171,8 @@ impl FrontPlan {
         }
     }
 
-    /// Where each update waits. A front's own update lies on the other stack than its children's, which are the last there.
+    /// Assigns a stack position to each update. The update of a front lies on the other stack than those of its
+    /// children, which are the last entries there.
     fn place_updates(&mut self, parent: &[u32]) {
         for f in (0..self.fronts.len()).rev() {
             if parent[f] != NONE {

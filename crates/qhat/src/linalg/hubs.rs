@@ -1,6 +1,7 @@
-//! Hubs: points that very many unknowns touch.
+//! Hubs: points with very many unknowns.
 //!
-//! A point adds B W Bᵀ to the matrix, a clique of all that touch it. Kept as unknowns of its own, a = W Bᵀ x, it adds only B:
+//! A point adds B W Bᵀ to the matrix, a clique of all its unknowns. With unknowns of its own, a = W Bᵀ x, it adds only
+//! B:
 //!
 //! ```text
 //! (A′ + B W Bᵀ) x = b   ⇔   [ A′   B  ] [x]   [b]
@@ -8,8 +9,9 @@
 //! ```
 //!
 //! This matrix is quasi-definite: any order of elimination works, with negative pivots for a, as long as A′ is positive
-//! definite. Where it cannot be, because more unknowns hang on the other points of a piece than those can hold, some of them
-//! come after the hub. Source: Vanderbei, Symmetric quasidefinite matrices, SIAM J. Optim. 5 (1995).
+//! definite. A′ is singular if a piece has more unknowns than the coordinates of its other points; some of these
+//! unknowns are then eliminated after the hub. Source: Vanderbei, Symmetric quasidefinite matrices, SIAM J. Optim. 5
+//! (1995).
 
 use super::Incidence;
 use super::plan::{EliminationPlan, HUB_FROM};
@@ -48,7 +50,8 @@ impl Hubs {
         first as u32..(first + self.width) as u32
     }
 
-    /// The unknowns and those of the hubs: in a hub's place, every unknown that touches it has a point with the hub's.
+    /// The incidence with the unknowns of the hubs. The point of a hub is replaced by one point for each of its
+    /// unknowns, shared with the unknowns of the hub.
     pub(crate) fn extended(&self, incidence: &Incidence) -> Incidence {
         let mut points = incidence.points() as u32;
         let mut of_hubs = vec![Vec::new(); self.points.len()];
@@ -85,8 +88,8 @@ impl Hubs {
         hubs
     }
 
-    /// Order of elimination of a component, by places in `unknowns` and then the numbers of its hubs' unknowns: what hangs
-    /// on other points, the hubs, what would make A′ singular.
+    /// Order of elimination of a component, as indices into `unknowns` and then the numbers of its hubs' unknowns:
+    /// first the unknowns that leave A′ regular, then the hubs, then the unknowns that would make A′ singular.
     pub(crate) fn order(&self, incidence: &Incidence, unknowns: &[u32], hubs: Range<u32>) -> Vec<u32> {
         let inner = |u: u32| incidence.points_of(u).iter().copied().filter(|&p| self.number(p).is_none());
         let rest = Incidence::new(incidence.points(), unknowns.iter().map(|&u| inner(u)));
@@ -101,8 +104,8 @@ impl Hubs {
         order
     }
 
-    /// Which unknowns come after the hubs: in each piece that is left without hubs, as many of those that touch one as there
-    /// are unknowns beyond `width` for each point.
+    /// Which unknowns come after the hubs: in each piece that is left without hubs, as many of those that touch one as
+    /// there are unknowns beyond `width` for each point.
     fn late(&self, incidence: &Incidence, unknowns: &[u32], rest: &Incidence) -> Vec<bool> {
         let mut late = vec![false; unknowns.len()];
         let mut counted = vec![false; rest.points()];

@@ -1,7 +1,7 @@
-//! Unknowns and the points they touch: two unknowns are coupled where they share a point.
+//! Incidence of unknowns and points: two unknowns are coupled if they share a point.
 //!
-//! A graph of rods in the words of this folder: a rod is an unknown, a particle a point. It is far smaller than the pattern of
-//! the matrix, where every point becomes a clique.
+//! A graph of rods in the words of this folder: a rod is an unknown, a particle a point. It is far smaller than the
+//! pattern of the matrix, where every point becomes a clique.
 
 #[cfg(test)]
 use super::Pattern;
@@ -57,8 +57,8 @@ impl Incidence {
         Incidence::new(points as usize, lists.into_iter())
     }
 
-    /// The part with these unknowns and their points, both numbered anew in the order given; `scratch` is all `u32::MAX`
-    /// before and after, one number a point.
+    /// The part with these unknowns and their points, both numbered anew in the order given; `scratch` is all
+    /// `u32::MAX` before and after, one number a point.
     pub(crate) fn part(&self, unknowns: &[u32], scratch: &mut [u32]) -> Self {
         let mut points = 0;
         let mut lists = Vec::with_capacity(unknowns.len());

@@ -1,7 +1,7 @@
 //! The dense work of a front on tiles of eight rows by four columns.
 //!
-//! Every number is a sum over k in ascending order, each product rounded before it is added: how many numbers a register holds
-//! changes nothing. `pulp` picks the widest registers of the machine at run time.
+//! Every number is a sum over k in ascending order, each product rounded before it is added: how many numbers a
+//! register holds changes nothing. `pulp` picks the widest registers of the machine at run time.
 
 use super::eight::{Eight, LANES};
 

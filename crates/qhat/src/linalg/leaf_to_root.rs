@@ -5,12 +5,12 @@
 //! G −E    ν  =  s        H: D × D blocks, on the diagonal and on the edges of the forest; E ≥ 0 diagonal
 //! ```
 //!
-//! Each row of G belongs to one edge of the forest (or to a root) and is eliminated together with the child below it. With
-//! H, g on the child, O = H_cp and w = g_p on its parent, n = g/|g|, γ = |g|:
+//! Each row of G belongs to one edge of the forest (or to a root) and is eliminated together with the child below it.
+//! With H, g on the child, O = H_cp and w = g_p on its parent, n = g/|g|, γ = |g|:
 //!
 //! ```text
-//! T = Z (ZᵀHZ)⁻¹ Zᵀ = Bᵀ P⁻¹ B    what the child does across the row, Z ⊥ n; P diagonal, B = L⁻¹ Zᵀ by LDLᵀ
-//! v = n − T H n,   â = nᵀ H v     what it does along it, the rest following
+//! T = Z (ZᵀHZ)⁻¹ Zᵀ = Bᵀ P⁻¹ B    the child's response across the row, Z ⊥ n; P diagonal, B = L⁻¹ Zᵀ by LDLᵀ
+//! v = n − T H n,   â = nᵀ H v     the child's response along the row, with the directions across following
 //! S = (â γ; γ −E),  S⁻¹ = (E γ; γ −â)/(γ² + âE)
 //! u = Oᵀ v
 //! H_pp ← H_pp − Oᵀ T O − (u w) S⁻¹ (u w)ᵀ
@@ -18,26 +18,29 @@
 //! and back:  (y, ν) = S⁻¹ (v·(r − O x_p), s − w·x_p),   x = T (r − O x_p) + v y
 //! ```
 //!
-//! An edge without a row has T = H⁻¹ and no S. Nothing is squared and nothing is divided by E, so masses of 1e9:1 cost no
-//! digits; T stays in its factors, since a stiff spring or a penalty in H would cost an inverse its digits. A hub of any degree costs no more than its edges.
+//! An edge without a row has T = H⁻¹ and no S. The recurrence squares no number and divides by no entry of E, so mass
+//! ratios of 1e9 cost no digits. T is kept in factors, because a stiff spring or a penalty in H would cost an inverse
+//! its digits. A hub of any degree costs no more than its edges.
 //!
-//! A pivot across that is not positive (H need not be definite) is mended: first by taking out the indefinite part of its
-//! edge (`retreat`), then by adding to its diagonal. Both leave the right side alone, so that Newton's method stays right.
-//! Source: Baraff, Linear-Time Dynamics using Lagrange SolveFor (1996), extended by geometric stiffness.
+//! H need not be definite. A pivot across the row that is not positive is repaired in two steps: first the indefinite
+//! part of its edge is removed (`retreat`), then a positive number is added to its diagonal. Both steps change the
+//! matrix and not the right-hand side, so the solution that Newton's method converges to stays the same. Source:
+//! Baraff, Linear-Time Dynamics using Lagrange Multipliers (1996), extended by geometric stiffness.
 
 use super::block::{
     Block, accumulate, diagonal, divide, forward, ldl, load, outer, plus, product, store, times, transposed,
     transposed_times, vector, zero,
 };
+use crate::number::{dot, norm};
 
 /// No parent, no row, no edge.
 pub(crate) const NONE: usize = usize::MAX;
 
-/// A pivot across must exceed this part of the node's own floor; below, the matrix is about to lose its definiteness and the
-/// step it gives is no descent.
+/// A pivot across the row must exceed this part of the node's floor. Below it the matrix is about to lose its
+/// definiteness, and the step that it gives is no descent direction.
 const LEAST_PIVOT: f64 = 1e-3;
 
-/// What mends a pivot that retreating did not: this many floors on the diagonal, more each time.
+/// Added to the diagonal where `retreat` did not repair a pivot [floors of the node]; larger at each attempt.
 const MENDING: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// One unknown block with the edge to its parent, in the order of elimination.
@@ -45,7 +48,7 @@ const MENDING: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 pub(crate) struct ForestEdge {
     /// Its block.
     pub(crate) node: usize,
-    /// The block it hangs on, or [`NONE`].
+    /// The block of its parent, or [`NONE`].
     pub(crate) parent: usize,
     /// The edge whose block is H_cp, or [`NONE`].
     pub(crate) edge: usize,
@@ -56,7 +59,7 @@ pub(crate) struct ForestEdge {
     pub(crate) above: usize,
 }
 
-/// What is factored.
+/// The saddle system before it is factored.
 pub(crate) struct Saddle<'a> {
     /// Diagonal blocks of H; consumed.
     pub(crate) diagonal: &'a mut [f64],
@@ -64,7 +67,7 @@ pub(crate) struct Saddle<'a> {
     pub(crate) coupling: &'a [f64],
     /// The indefinite part of an edge: −B, where B may be added to both ends and taken from the coupling.
     pub(crate) retreat: &'a [f64],
-    /// What a pivot may be expected to exceed, one number a node.
+    /// The floor of each node: the size that its pivots are expected to exceed.
     pub(crate) floor: &'a [f64],
     /// G's blocks of D numbers.
     pub(crate) rows: &'a [f64],
@@ -105,7 +108,7 @@ impl LeafToRoot {
         }
     }
 
-    /// Factors what has been assembled.
+    /// Factors the system that has been assembled.
     pub(crate) fn factor<const D: usize>(&mut self, saddle: Saddle<'_>) {
         for (k, link) in self.links.iter().enumerate() {
             let hangs = link.parent != NONE;
@@ -133,7 +136,7 @@ impl LeafToRoot {
                     }
                 }
             }
-            // What is still no number is found by whoever looks at the solution.
+            // A pivot that is still NaN shows in the solution, which the caller checks.
             let T = T.unwrap_or(Across { B: [[f64::NAN; D]; D], weight: [f64::NAN; D] });
 
             let mut v = [0.0; D];
@@ -243,7 +246,8 @@ fn factor_whole<const D: usize>(H: &Block<D>, least: f64) -> Option<Across<D>> {
     Some(Across { B: transposed(&columns), weight: divide(&factor, [1.0; D]) })
 }
 
-/// Z (ZᵀHZ)⁻¹ Zᵀ in factors, for the D − 1 directions Z across the unit vector n; `None` where a pivot does not exceed `least`.
+/// Z (ZᵀHZ)⁻¹ Zᵀ in factors, for the D − 1 directions Z across the unit vector n; `None` where a pivot does not exceed
+/// `least`.
 #[inline(always)]
 fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Option<Across<D>> {
     let (mut B, mut weight) = (zero(), [0.0; D]);
@@ -253,8 +257,8 @@ fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Optio
         weight[0] = 1.0 / pivot;
         return (pivot > least).then_some(Across { B, weight });
     }
-    // Two vectors across n without a branch that could divide by zero: Duff et al., Building an orthonormal basis, revisited,
-    // J. Computer Graphics Techniques 6 (2017).
+    // Two vectors across n without a branch that could divide by zero: Duff et al., Building an orthonormal basis,
+    // revisited, J. Computer Graphics Techniques 6 (2017).
     let sign = 1.0_f64.copysign(n[2]);
     let a = -1.0 / (sign + n[2]);
     let b = n[0] * n[1] * a;
@@ -271,18 +275,4 @@ fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Optio
 #[inline(always)]
 fn put<const D: usize>(flat: &mut [f64], i: usize, x: [f64; D]) {
     flat[i * D..][..D].copy_from_slice(&x);
-}
-
-#[inline(always)]
-fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
-    let mut sum = a[0] * b[0];
-    for k in 1..D {
-        sum += a[k] * b[k];
-    }
-    sum
-}
-
-#[inline(always)]
-fn norm<const D: usize>(a: [f64; D]) -> f64 {
-    dot(a, a).sqrt()
 }

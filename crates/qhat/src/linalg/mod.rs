@@ -29,7 +29,7 @@ pub(crate) use incidence::Incidence;
 pub(crate) use leaf_to_root::{ForestEdge, LeafToRoot, NONE, Saddle};
 pub(crate) use plan::EliminationPlan;
 pub use plan::{Component, ComponentKind, FactorMethod};
-pub(crate) use rank::rank;
+pub(crate) use rank::rank_of;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use symmetric::{Lower, Pattern};
 
@@ -39,7 +39,8 @@ use multifrontal::Multifrontal;
 use simplicial::{Simplicial, SimplicialPlan};
 use std::sync::Arc;
 
-/// Up to this order the dense factorization is at least as fast as the sparse one, whatever the pattern.
+/// Order up to which a matrix is factored densely: there the dense factorization is at least as fast as the sparse one
+/// for every pattern.
 pub(crate) const DENSE_UP_TO: usize = 24;
 
 /// The LDLᵀ factorization of a symmetric positive definite matrix, dense when small, sparse beyond.
@@ -61,7 +62,7 @@ impl Factor {
         Factor::with(&Arc::new(Symbolic::new(pattern, &plan, Some(order), vec![false; pattern.order()])))
     }
 
-    /// For a matrix whose plan was made when its structure was found.
+    /// The factor of a matrix whose plan was made with its structure.
     pub(crate) fn with(symbolic: &Arc<Symbolic>) -> Self {
         if symbolic.unknowns <= DENSE_UP_TO {
             Factor::Dense(DenseLdl::new(symbolic.unknowns))
@@ -70,8 +71,8 @@ impl Factor {
         }
     }
 
-    /// Factors A + shift·I and returns the smallest pivot; a pivot that is not positive means that no factor was made.
-    /// Unknowns of hubs are not shifted, and their pivots count with the other sign, only if they are wrong.
+    /// Factors A + shift·I and returns the smallest pivot. If that pivot is not positive, no factor was made. Unknowns
+    /// of hubs are not shifted, and their pivots, which must be negative, count only if they are not.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
         match self {
             Factor::Dense(ldl) => ldl.factor(pattern, values, shift),
@@ -79,7 +80,7 @@ impl Factor {
         }
     }
 
-    /// What the numbers of L and where they are take [bytes].
+    /// Memory of the numbers of L and their positions [bytes].
     #[cfg(test)]
     pub(crate) fn memory(&self) -> usize {
         match self {
@@ -100,7 +101,7 @@ impl Factor {
     }
 }
 
-/// All of a sparse factorization that depends on the pattern alone.
+/// The part of a sparse factorization that depends on the pattern alone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
     unknowns: usize,

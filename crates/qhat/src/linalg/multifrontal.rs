@@ -1,4 +1,5 @@
-//! Multifrontal LDLᵀ: the columns of a front are eliminated as one dense block, and what that leaves is handed to its parent.
+//! Multifrontal LDLᵀ: the columns of a front are eliminated as one dense block, and its Schur complement goes to its
+//! parent.
 //!
 //! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM TOMS 9 (1983).
 
@@ -23,7 +24,7 @@ pub(crate) struct Multifrontal {
 struct Scratch {
     /// D Lᵀ for a block of eight rows.
     w: Vec<Eight>,
-    /// Where the rows of a child are in its parent's L.
+    /// The positions of the rows of a child in its parent's L.
     offset: Vec<usize>,
     /// Eight partial sums for each column.
     sums: Vec<Eight>,
@@ -91,7 +92,8 @@ impl Multifrontal {
     }
 }
 
-/// What runs with the widest registers of the machine. A type of its own, not a closure, so that all of it is compiled for them.
+/// The work that runs with the widest registers of the machine. It is a type and not a closure, so that all of it is
+/// compiled for these registers.
 struct Factorization<'a> {
     ldl: &'a mut Multifrontal,
     plan: &'a FrontPlan,
@@ -174,7 +176,8 @@ fn take(
     }
 }
 
-/// Eight columns after eight: what is left of them is subtracted, then they are eliminated in all rows.
+/// Eliminates eight columns at a time: the columns before are subtracted from them, then they are eliminated in all
+/// rows.
 #[inline(always)]
 fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Eight]) -> f64 {
     let k = d.len();
@@ -272,7 +275,7 @@ fn scale(l: &[Eight], d: &[f64], w: &mut [Eight]) {
     }
 }
 
-/// The update loses L D Lᵀ of the rows below.
+/// update ← update − L D Lᵀ of the rows below.
 #[inline(always)]
 fn subtract_update(front: &Front, l: &[Eight], d: &[f64], update: &mut [Eight], w: &mut [Eight]) {
     let (k, blocks) = (front.columns, front.row_blocks());

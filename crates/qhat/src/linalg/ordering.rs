@@ -1,15 +1,15 @@
 //! Minimum degree ordering: eliminate, again and again, the unknown that is coupled to the fewest others.
 //!
-//! Kept as a quotient graph: a point is an *element*, the clique of the unknowns that touch it, and an eliminated unknown
-//! joins the elements it was in to one, so that storage never grows beyond the input. Ties go to the lower index: the order
-//! depends on nothing but the pattern. Source: George and Liu, The evolution of the minimum degree ordering algorithm, SIAM
-//! Review 31 (1989).
+//! Kept as a quotient graph: a point is an *element*, the clique of the unknowns that touch it, and an eliminated
+//! unknown joins the elements it was in to one, so that storage never grows beyond the input. Ties go to the lower
+//! index: the order depends on nothing but the pattern. Source: George and Liu, The evolution of the minimum degree
+//! ordering algorithm, SIAM Review 31 (1989).
 
 use super::Incidence;
 use std::collections::BTreeSet;
 
-/// The order in which to eliminate the first `free` unknowns (what comes after them stays and counts as a neighbour);
-/// `None` once more than `budget` neighbours were looked at.
+/// The order in which to eliminate the first `free` unknowns; the unknowns after them stay and count as neighbours.
+/// `None` if more than `budget` neighbours were visited.
 pub(crate) fn minimum_degree(incidence: &Incidence, free: usize, mut budget: usize) -> Option<Vec<u32>> {
     let mut graph = QuotientGraph::new(incidence);
     let mut degree: Vec<usize> = (0..free as u32).map(|i| graph.degree(i)).collect();
@@ -20,7 +20,7 @@ pub(crate) fn minimum_degree(incidence: &Incidence, free: usize, mut budget: usi
         let mut clique = graph.eliminate(pivot);
         clique.retain(|&i| (i as usize) < free);
         if clique.len() == queue.len() {
-            // All that is left is one clique: any order of it is as good as any other.
+            // The rest is one clique: every order of it is as good as any other.
             order.extend(clique);
             break;
         }

@@ -1,4 +1,5 @@
-//! How to factor a matrix, decided once from its couplings: connected components, their order of elimination, the method.
+//! The plan of a factorization, made once from the couplings: connected components, their orders of elimination, their
+//! methods.
 
 use super::Incidence;
 use super::dissection::nested_dissection;
@@ -6,15 +7,15 @@ use super::elimination::Elimination;
 use super::hubs::Hubs;
 use super::ordering::minimum_degree;
 
-/// How the unknowns of a component hang together.
+/// Shape of the graph of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ComponentKind {
-    /// One after the other: a chain.
+    /// A chain.
     Path,
-    /// No cycle.
+    /// A graph without a cycle.
     Tree,
-    /// With cycles.
+    /// A graph with cycles.
     Cyclic,
 }
 
@@ -55,11 +56,11 @@ impl FactorMethod {
 /// One connected component of the matrix and what its factorization costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Component {
-    /// How it hangs together.
+    /// Shape of its graph.
     pub kind: ComponentKind,
     /// Number of rows of A.
     pub rows: usize,
-    /// Points that so many rows touch that they stay in the matrix as unknowns of their own.
+    /// Hubs: points with so many rows that their accelerations stay in the matrix as unknowns.
     pub hubs: usize,
     /// How it is factored.
     pub method: FactorMethod,
@@ -69,19 +70,20 @@ pub struct Component {
     pub factor_flops: u64,
     /// Floating point operations of one solve.
     pub solve_flops: u64,
-    /// What its factor takes, about [bytes].
+    /// Memory of its factor, approximately [bytes].
     pub memory: u64,
 }
 
-/// A point that so many unknowns touch becomes a hub: eliminated into A it would couple each of them with every other.
-/// A star of 30 spokes takes 3.6 µs with the clique and 1.3 µs with the hub; below, matrices are mostly dense and small.
+/// Unknowns from which on a point becomes a hub: eliminated into A it would couple each of them with every other. A
+/// star of 30 spokes takes 3.6 µs with the clique and 1.3 µs with the hub; below, matrices are mostly dense and small.
 pub(crate) const HUB_FROM: usize = 32;
 
-/// From this many operations for each entry of L on, blocks pay: a net of 10 × 10 (9) is as fast either way, one of 32 × 32 (21)
-/// takes 0.14 instead of 0.24 ms, a truss (4) would take 1.6 times as long.
+/// Operations for each entry of L from which on the multifrontal method is chosen: a net of 10 × 10 (9) is as fast
+/// either way, a net of 32 × 32 (21) takes 0.14 instead of 0.24 ms, a truss (4) would take 1.6 times as long.
 const BLOCKED_FROM: u64 = 12;
 
-/// The order of elimination: first what is factored entry by entry, then what is factored in fronts.
+/// The order of elimination: first the unknowns that are factored entry by entry, then those that are factored in
+/// fronts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EliminationPlan {
     pub(crate) order: Vec<u32>,
@@ -169,7 +171,8 @@ impl Component {
     }
 }
 
-/// Numbers and indices of L; fronts hold zeros and, for a while, what they hand on: about twice the largest.
+/// Memory of numbers and indices of L [bytes]; fronts add stored zeros and the updates that wait: about twice the
+/// largest.
 fn memory(method: FactorMethod, elimination: &Elimination) -> u64 {
     let largest = u64::from(elimination.below.iter().copied().max().unwrap_or(0));
     match method {
@@ -178,7 +181,7 @@ fn memory(method: FactorMethod, elimination: &Elimination) -> u64 {
     }
 }
 
-/// An order of elimination with little fill, and what it leads to.
+/// An order of elimination with little fill, and its symbolic elimination.
 fn order(part: &Incidence, kind: ComponentKind) -> (Vec<u32>, Elimination) {
     let n = part.unknowns();
     let analysed = |order: Vec<u32>| {
@@ -189,7 +192,7 @@ fn order(part: &Incidence, kind: ComponentKind) -> (Vec<u32>, Elimination) {
         return analysed(leaves_first(part));
     }
     let dissected = analysed(nested_dissection(part));
-    // Minimum degree is the better one on what is long and thin, and quick there; on large nets it is neither.
+    // Minimum degree is better and quick on long thin graphs; on large nets it is neither.
     match minimum_degree(part, n, 100 * n + 200_000).map(analysed) {
         Some(other) if other.1.factor_flops() < dissected.1.factor_flops() => other,
         _ => dissected,
@@ -237,7 +240,7 @@ pub(crate) fn components(incidence: &Incidence) -> Vec<(ComponentKind, Vec<u32>)
     components
 }
 
-/// The order of a tree in which nothing fills in: from the leaves to the unknown that is last in the component.
+/// The order of a tree without fill: from the leaves to the unknown that is last in the component.
 fn leaves_first(tree: &Incidence) -> Vec<u32> {
     let root = tree.unknowns() as u32 - 1;
     let mut seen = vec![false; tree.unknowns()];

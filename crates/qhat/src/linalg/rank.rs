@@ -1,8 +1,9 @@
-//! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and the
-//! rank is the number of pivots before they fall to the roundoff of what was subtracted.
-//! Source: Higham, Analysis of the Cholesky decomposition of a semi-definite matrix (1990).
+//! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and
+//! the rank is the number of pivots before they fall to the roundoff of what was subtracted. Source: Higham, Analysis
+//! of the Cholesky decomposition of a semi-definite matrix (1990).
 
-/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is consumed.
+/// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is
+/// consumed.
 pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
     // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
     // amplified by the conditioning of the rows already taken, for which three digits are allowed.
@@ -26,6 +27,41 @@ pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
         }
     }
     rank
+}
+
+/// Rank of the sparse matrix of a pattern, with the unknowns that `is_eliminated` names taken out of it first and a
+/// diagonal of one for the rows that `is_active` names, of zero for the others.
+///
+/// An eliminated unknown h has −1 on its diagonal, so eliminating it adds the outer product of its column.
+pub(crate) fn rank_of(
+    pattern: &super::Pattern,
+    values: &[f64],
+    is_eliminated: impl Fn(usize) -> bool,
+    is_active: impl Fn(usize) -> bool,
+) -> usize {
+    let n = pattern.order();
+    let mut dense = vec![0.0; n * n];
+    for i in 0..n {
+        for slot in pattern.start[i]..pattern.start[i + 1] {
+            let j = pattern.column[slot];
+            dense[i * n + j] = values[slot];
+            dense[j * n + i] = values[slot];
+        }
+    }
+    for h in (0..n).filter(|&h| is_eliminated(h)) {
+        let column: Vec<f64> = (0..n).map(|i| dense[i * n + h]).collect();
+        for i in (0..n).filter(|&i| i != h && column[i] != 0.0) {
+            for j in 0..n {
+                dense[i * n + j] += column[i] * column[j];
+            }
+        }
+        dense[h * n..(h + 1) * n].fill(0.0);
+        (0..n).for_each(|i| dense[i * n + h] = 0.0);
+    }
+    for i in (0..n).filter(|&i| !is_eliminated(i)) {
+        dense[i * n + i] = if is_active(i) { 1.0 } else { 0.0 };
+    }
+    rank(n, dense)
 }
 
 fn largest(active: &[usize], value: impl Fn(usize) -> f64) -> Option<(usize, usize)> {

@@ -1,18 +1,19 @@
 //! Sparse LDLᵀ, row by row ("up-looking"): for matrices whose columns of L have few entries.
 //!
-//! Row k of L solves L_{<k} D y = A_{k,<k}ᵀ; only the unknowns below k in the elimination tree take part, and which those
-//! are is found once. Source: Davis, Algorithm 849: a concise sparse Cholesky factorization package, ACM TOMS 31 (2005).
+//! Row k of L solves L_{<k} D y = A_{k,<k}ᵀ. Only the unknowns below k in the elimination tree contribute, and their
+//! list is found once. Source: Davis, Algorithm 849: a concise sparse Cholesky factorization package, ACM TOMS 31
+//! (2005).
 
 use super::Lower;
 use super::elimination::NONE;
 use std::ops::Range;
 
-/// Where the entries of L are. Columns of L are stored one after the other, each with its rows ascending.
+/// The positions of the entries of L. Columns of L are stored one after the other, each with its rows ascending.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SimplicialPlan {
-    /// The rows of the matrix that are factored so.
+    /// The rows of the matrix that are factored entry by entry.
     rows: Range<usize>,
-    /// The columns of row k of L, ascending, and where in column storage the entry goes.
+    /// The columns of row k of L, ascending, and the position of each entry in column storage.
     row_start: Vec<u32>,
     row_entry: Vec<(u32, u32)>,
     column_start: Vec<u32>,
@@ -62,7 +63,7 @@ impl SimplicialPlan {
         SimplicialPlan { rows, row_start, row_entry, column_start, row_index }
     }
 
-    /// [bytes]
+    /// Memory of L [bytes].
     #[cfg(test)]
     pub(crate) fn memory(&self) -> usize {
         20 * self.row_index.len() + 24 * self.rows.len()

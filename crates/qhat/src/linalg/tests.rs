@@ -5,12 +5,13 @@ use super::dissection::nested_dissection;
 use super::elimination::Elimination;
 use super::{
     ComponentKind, DenseLdl, EliminationPlan, Factor, Incidence, Pattern, SparseLdl, Symbolic, SymmetricMatrix,
-    ordering, rank,
+    ordering, rank::rank,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
-/// A symmetric matrix with dominant diagonal, so positive definite, with the couplings given as pairs; values from a seed.
+/// A symmetric matrix with dominant diagonal, so positive definite, with the couplings given as pairs; values from a
+/// seed.
 fn matrix(n: usize, pairs: &[(usize, usize)], seed: u64) -> (Pattern, Vec<f64>) {
     let mut rows = vec![Vec::new(); n];
     for &(i, j) in pairs {
@@ -162,7 +163,8 @@ proptest! {
         let single = EliminationPlan { order, simplicial: n, ..EliminationPlan::default() };
         let b = right_side(n);
         let solve = |plan: &EliminationPlan| {
-            let mut ldl = SparseLdl::new(Symbolic::new(&pattern, plan, Some(plan.order.clone()), vec![false; pattern.order()]).into());
+            let negative = vec![false; pattern.order()];
+            let mut ldl = SparseLdl::new(Symbolic::new(&pattern, plan, Some(plan.order.clone()), negative).into());
             let pivot = ldl.factor(&values, shift);
             let mut x = b.clone();
             ldl.solve(&mut x);

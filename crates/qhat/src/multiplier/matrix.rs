@@ -4,11 +4,13 @@
 //! A = J W Jᵀ,   A_ij = Σ_p w_p J_ip · J_jp        m × m, symmetric, positive semidefinite
 //! ```
 //!
-//! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which pairs of
-//! blocks meet in which entry is found once, when the System is built; so is the order of elimination, in which A is stored.
+//! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which
+//! pairs of blocks meet in which entry is found once, when the System is built, and so is the order of elimination,
+//! in which A is stored.
 //!
-//! A particle h with very many rods, a hub, would couple each with every other. Its share of A is not formed; its acceleration
-//! stays in the matrix, in units of √w_h so that all is alike in size (`linalg/hubs.rs`):
+//! A particle h with very many rods, a hub, would couple each of them with every other. Its share of A is not formed;
+//! its acceleration stays an unknown of the matrix, in units of √w_h so that all entries are alike in size
+//! (`linalg/hubs.rs`):
 //!
 //! ```text
 //! [ A − Σ_h B_h B_hᵀ   B ] [λ]       B_ih = √w_h J_ih,   a_h = B_hᵀ λ
@@ -21,7 +23,7 @@ use crate::point::{Point, dot, scaled};
 use crate::structure::MatrixStructure;
 
 impl MatrixStructure {
-    /// Writes A = J W Jᵀ, where there are hubs in the form above.
+    /// Writes A = J W Jᵀ, with hubs in the form above.
     pub(crate) fn assemble<const D: usize>(&self, J: &Jacobian, W: &[f64], A: &mut [f64]) {
         A.fill(0.0);
         let (mut blocks, mut slots) = (&self.blocks[..], &self.slots[..]);
@@ -50,7 +52,7 @@ impl MatrixStructure {
         }
     }
 
-    /// J W Jᵀ with its rows in the order the user gave them and no unknowns for hubs: to look at.
+    /// J W Jᵀ with its rows in the order of the user and without unknowns for hubs, for terms.
     pub(crate) fn in_given_order<const D: usize>(&self, J: &Jacobian, W: &[f64]) -> SymmetricMatrix {
         let m = J.row_count();
         let moving = |row: usize| J.row(row).filter(move |(particle, _)| !self.inert[row] && W[particle.0] > 0.0);

@@ -1,4 +1,4 @@
-//! The constraint force and the motion it leads to.
+//! The constraint force, and the acceleration.
 //!
 //! ```text
 //! Q̂ = s Jᵀ λ,   s = 1 − elasticity         [N], d·n numbers
@@ -11,7 +11,7 @@ use crate::constraint::Jacobian;
 pub(crate) fn constraint_forces<const D: usize>(J: &Jacobian, lambda: &[f64], s: f64, Q_hat: &mut [f64]) {
     Q_hat.fill(0.0);
     J.add_transposed::<D>(lambda, Q_hat);
-    // s = 1 is the rule; multiplying by it would change no bit, so no branch is needed.
+    // Mostly s = 1. A multiplication by it changes no bit, so no branch is needed.
     for force in Q_hat {
         *force *= s;
     }

@@ -1,4 +1,4 @@
-//! The right side, in its four terms (m numbers each, [C]/s²).
+//! The right-hand side b, in its four terms (m numbers each, [C]/s²).
 //!
 //! ```text
 //! b = −γ − J W Q − ks C − kd Ċ
@@ -10,9 +10,9 @@ use crate::settings::Feedback;
 /// The four terms of b and their sum.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RightHandSide {
-    /// −γ: what C̈ would be without any acceleration, turned round.
+    /// −γ; γ is C̈ without any acceleration.
     pub(crate) bias: Vec<f64>,
-    /// −J W Q: the illegal part of the applied forces, turned round.
+    /// −J W Q; J W Q is C̈ by the applied forces.
     pub(crate) forces: Vec<f64>,
     /// −ks C.
     pub(crate) stiffness: Vec<f64>,

@@ -127,8 +127,8 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
     let back = multiply(&system, &equation, &lambda);
     let residual = (0..m).map(|i| (back[i] - b[i]).abs()).fold(0.0, f64::max);
     println!(
-        "{name:>11} {m:>8} rows: build {built:.3} s, workspace {made:.3} s, factor {:.4} ms ({:.1} ns/row), solve {:.4} ms \
-         ({:.1} ns/row), residual {residual:.1e}{}",
+        "{name:>11} {m:>8} rows: build {built:.3} s, workspace {made:.3} s, factor {:.4} ms ({:.1} ns/row), \
+         solve {:.4} ms ({:.1} ns/row), residual {residual:.1e}{}",
         factor * 1e3,
         factor / m as f64 * 1e9,
         solve * 1e3,
@@ -165,7 +165,7 @@ fn timed_solves() {
     }
 }
 
-/// Redundant rods between a hub and its tips, and three rods in a plane that hold a tip: only the first are singular.
+/// Redundant rods between a hub and its tips make A singular; three rods in a plane that hold a tip do not.
 #[test]
 fn a_hub_is_not_mistaken_for_a_redundancy() {
     for redundant in [false, true] {
@@ -195,12 +195,12 @@ fn a_hub_is_not_mistaken_for_a_redundancy() {
     }
 }
 
-/// What is foretold of memory, before anything is allocated, is within a factor of two of what the factor then takes.
+/// The memory estimated before anything is allocated is within a factor of two of the memory of the factor.
 #[test]
-fn memory_is_foretold() {
+fn memory_is_estimated() {
     for (name, (system, _)) in [("truss", truss(200)), ("net", net(60)), ("star", star(1000)), ("chain", chain(1000))] {
-        let foretold: u64 = system.components().iter().map(|component| component.memory).sum();
+        let estimated: u64 = system.components().iter().map(|component| component.memory).sum();
         let taken = crate::linalg::Factor::with(&system.matrix.symbolic).memory() as u64;
-        assert!(foretold < 2 * taken && taken < 2 * foretold, "{name}: {foretold} foretold, {taken} bytes taken");
+        assert!(estimated < 2 * taken && taken < 2 * estimated, "{name}: {estimated} estimated, {taken} bytes taken");
     }
 }

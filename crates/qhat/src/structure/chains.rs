@@ -1,15 +1,17 @@
-//! Which particle sits where: chains laid into lanes, found once when a System is built.
+//! The plan of chains: the lane and the block of every particle, found once when a System is built.
 //!
-//! A system qualifies if every constraint is a rod in the length form or a nail, and its rods, cut at whatever is held, form
-//! open chains (a free particle is a chain without links). Chains of like length go side by side, one a lane; a long one
-//! alone is cut into eight stretches. A group of eight lanes with S rows has S + 1 blocks of particles: block i of a lane is
-//! the particle at the end of its row i, block 0 the one its first row begins at.
+//! A system qualifies if every constraint is a rod in the length form or a nail, and if its rods, cut at fixed and
+//! nailed particles, form open chains (a free particle is a chain without links). Chains of similar length are placed
+//! side by side, one in each lane; a long chain alone is cut into eight stretches. A group of eight lanes with S rows
+//! has S + 1 blocks of particles: block i of a lane is the particle at the end of its row i, block 0 the particle at
+//! which its first row begins.
 
 use crate::constraint::{Constraint, DistanceForm, NailForm, NamedConstraint};
 use crate::linalg::eight::{F8, LANES};
 use std::ops::Range;
 
-/// A chain with fewer links than this is not cut: joining the stretches again would cost more than the lanes save.
+/// Fewest links of a chain that is cut. On a shorter chain the coupling of the stretches costs more than the lanes
+/// save.
 const WORTH_CUTTING: usize = 16;
 
 /// Eight lanes with the same number of rows.
@@ -19,9 +21,9 @@ pub(crate) struct Group {
     pub(crate) first: usize,
     /// S.
     pub(crate) rows: usize,
-    /// Whether any lane follows another.
+    /// Whether any lane continues another.
     pub(crate) is_coupled: bool,
-    /// 1 in a lane that goes on where the lane before ends, else 0.
+    /// 1 in a lane that continues the lane before, else 0.
     pub(crate) follows: F8,
 }
 
@@ -32,7 +34,7 @@ impl Group {
         self.first..self.first + self.rows + 1
     }
 
-    /// Its places in arrays of D numbers a block.
+    /// Its range in arrays of D numbers a block.
     #[inline(always)]
     pub(crate) fn coordinates<const D: usize>(&self) -> Range<usize> {
         self.first * D..(self.first + self.rows + 1) * D
@@ -62,9 +64,9 @@ pub(crate) struct ChainSlot {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ChainPlan {
     pub(crate) groups: Vec<Group>,
-    /// w [1/kg], 0 for what is held.
+    /// w [1/kg], 0 for fixed and nailed particles.
     pub(crate) w: Vec<F8>,
-    /// 1 for a particle that can move, counted once; 0 for copies, what is held and padding.
+    /// 1 for a particle that can move, counted once; 0 for copies, fixed and nailed particles, and padding.
     pub(crate) counted: Vec<F8>,
     /// r [m], 0 in padding.
     pub(crate) r: Vec<F8>,
@@ -74,9 +76,9 @@ pub(crate) struct ChainPlan {
     pub(crate) rod: Vec<F8>,
     /// 1 in padding, 0 for a rod: keeps pivots off zero.
     pub(crate) padding: Vec<F8>,
-    /// Where each moving particle lives.
+    /// The slot of each moving particle.
     pub(crate) homes: Vec<ChainSlot>,
-    /// All the other places: a held particle at the end of chains, heads that copy a tail, padding.
+    /// All other slots: fixed or nailed particles at the ends of chains, heads that copy a tail, padding.
     pub(crate) copies: Vec<ChainSlot>,
     /// Particles held by nails, with their points.
     pub(crate) nailed: Vec<(usize, [f64; 3])>,
@@ -89,13 +91,14 @@ struct Chain {
 }
 
 impl ChainPlan {
-    /// `None` if the system has anything else than open chains.
+    /// `None` if the system does not consist of open chains.
     pub(crate) fn new(constraints: &[NamedConstraint], inverse_mass: &[f64]) -> Option<ChainPlan> {
         let mut plan = ChainPlan::default();
         let mut is_held: Vec<bool> = inverse_mass.iter().map(|&w| w == 0.0).collect();
         for named in constraints {
             if let Constraint::Nail(nail) = &named.constraint {
-                // A second nail, or one in what is fixed, is redundant or a contradiction: not for here.
+                // A second nail, or a nail in a fixed particle, is redundant or a contradiction: the general path
+                // judges it.
                 if nail.form != NailForm::Vector || is_held[nail.particle.0] {
                     return None;
                 }
@@ -145,7 +148,7 @@ impl ChainPlan {
         )
     }
 
-    /// Where a moving particle lives; `None` for what is held.
+    /// The slot of a moving particle; `None` for a fixed or nailed one.
     pub(crate) fn home(&self, particle: usize) -> Option<ChainSlot> {
         let found = self.homes.binary_search_by_key(&particle, |place| place.particle);
         found.ok().map(|k| self.homes[k])
@@ -178,7 +181,7 @@ impl ChainPlan {
         self.padding.resize(end, F8::splat(1.0));
         let mut follows = F8::ZERO;
         for lane in 0..LANES {
-            // An empty lane is padded with what is in the first, held.
+            // An empty lane is padded with a fixed copy of the first.
             let (particles, lengths) = stretches.get(lane).copied().unwrap_or((&stretches[0].0[..1], &[]));
             let is_empty = lane >= stretches.len();
             if is_coupled && lane > 0 && !is_empty {
@@ -210,7 +213,7 @@ impl ChainPlan {
     }
 }
 
-/// The open chains between what is held, longest walks from their ends; `None` if anything branches or closes.
+/// The open chains between fixed and nailed particles, walked from their ends; `None` if a chain branches or closes.
 fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain>> {
     let mut rods = Vec::new();
     let mut touching = vec![[usize::MAX; 2]; is_held.len()];
@@ -222,7 +225,7 @@ fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain
             return None;
         };
         if rod.compliance > 0.0 {
-            // What gives way is a spring.
+            // A compliant rod is a spring and no row.
             continue;
         }
         if rod.form != DistanceForm::Length || rod.breaks_at.is_some() || (is_held[rod.a.0] && is_held[rod.b.0]) {

@@ -6,30 +6,30 @@ use std::ops::Range;
 /// A row that opens and closes, with its rows of friction.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Contact {
-    /// Its place among the constraints.
+    /// The index of its constraint.
     pub(crate) constraint: usize,
     pub(crate) normal: usize,
-    /// None without friction; one in the plane, two in space.
+    /// Rows of friction: none without friction, one in the plane, two in space.
     pub(crate) tangents: Range<usize>,
     /// e, the part of the closing speed that an impact gives back.
     pub(crate) restitution: f64,
     /// μ.
     pub(crate) friction: f64,
-    /// Its place among what breaks.
+    /// Its index among the breakable constraints.
     pub(crate) breakable: Option<usize>,
 }
 
 /// A constraint that breaks.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Breakable {
-    /// Its place among the constraints.
+    /// The index of its constraint.
     pub(crate) constraint: usize,
     pub(crate) rows: Range<usize>,
-    /// The tension that it does not survive [N].
+    /// The tension at which it breaks [N].
     pub(crate) limit: f64,
 }
 
-/// Everything of a system that contacts.
+/// The contacts and the breakable constraints of a system.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Contacts {
     pub(crate) list: Vec<Contact>,

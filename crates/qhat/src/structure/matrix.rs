@@ -1,7 +1,7 @@
 //! The structure of A = J W Jᵀ: its pattern, its order of elimination and the contributions to each entry.
 //!
-//! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which pairs of
-//! blocks meet in which entry never changes once a System is built. `multiplier/matrix.rs` writes the numbers.
+//! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which
+//! pairs of blocks meet in which entry never changes once a System is built. `multiplier/matrix.rs` writes the numbers.
 
 use crate::constraint::Layout;
 use crate::constraint::Softness;
@@ -10,7 +10,7 @@ use crate::space::ParticleId;
 
 use std::sync::Arc;
 
-/// The structure of A: its pattern, what is summed into each entry, and how it will be factored.
+/// The structure of A: its pattern, the contributions to each entry, and the plan of its factorization.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MatrixStructure {
     /// In the order of elimination.
@@ -22,7 +22,7 @@ pub(crate) struct MatrixStructure {
     pub(crate) meeting: Vec<Meeting>,
     pub(crate) blocks: Vec<u32>,
     pub(crate) slots: Vec<u32>,
-    /// Rows all of whose particles are fixed, and rows that give way and are forces here: their row of A is zero for good.
+    /// Rows all of whose particles are fixed, and compliant rows, which act as forces: their row of A is always zero.
     pub(crate) inert: Vec<bool>,
     pub(crate) symbolic: Arc<Symbolic>,
     pub(crate) components: Vec<Component>,
@@ -31,15 +31,15 @@ pub(crate) struct MatrixStructure {
 /// One number of B.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnHub {
-    /// The place of its row in the order of elimination.
+    /// The index of its row in the order of elimination.
     pub(crate) row: u32,
     pub(crate) slot: u32,
-    /// Which number of J it is made of.
+    /// The index of its number in J.
     pub(crate) number: u32,
     pub(crate) particle: ParticleId,
 }
 
-/// Where the rows of one particle meet.
+/// The blocks of J that belong to one particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting {
     pub(crate) particle: ParticleId,
@@ -47,7 +47,7 @@ pub(crate) struct Meeting {
     pub(crate) blocks: u32,
 }
 
-/// What is decided of A before anything large is allocated for it.
+/// The decisions about A that are made before any large array is allocated for it.
 #[derive(Clone, Debug)]
 pub(crate) struct MatrixPlan {
     incidence: Incidence,
@@ -80,7 +80,7 @@ impl MatrixPlan {
         MatrixPlan { incidence, hubs, plan, inert, components }
     }
 
-    /// What the factor will take [bytes].
+    /// Memory of the factor [bytes].
     pub(crate) fn memory(&self) -> u64 {
         self.components.iter().map(|component| component.memory).sum()
     }
@@ -90,7 +90,7 @@ impl MatrixStructure {
     pub(crate) fn new(layout: &Layout, W: &[f64], planned: MatrixPlan) -> Self {
         let MatrixPlan { incidence, hubs, plan, inert, components } = planned;
         let m = layout.row_count();
-        // What is small is factored densely, in the order given.
+        // A small matrix is factored densely, in the order given.
         let order = if m <= DENSE_UP_TO { (0..m as u32).collect() } else { plan.order.clone() };
         let permuted = hubs.extended(&incidence).permuted(&order);
         let pattern = Pattern::of_incidence(&permuted);
@@ -140,7 +140,7 @@ impl MatrixStructure {
         let mut seen = vec![false; particles];
         for first in 0..self.order.len() as u32 {
             for &p in incidence.points_of(first) {
-                // What unknowns share with a hub is no particle.
+                // A point beyond the particles is one that unknowns share with a hub.
                 if p as usize >= particles || std::mem::replace(&mut seen[p as usize], true) {
                     continue;
                 }
@@ -158,7 +158,7 @@ impl MatrixStructure {
         }
     }
 
-    /// Whether what is so numbered is an unknown of a hub, and no row.
+    /// Whether a number of the order belongs to an unknown of a hub and not to a row.
     pub(crate) fn is_hub(&self, row: u32) -> bool {
         row as usize >= self.inert.len()
     }

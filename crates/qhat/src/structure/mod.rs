@@ -1,5 +1,5 @@
-//! Structure: everything that depends on which particles, constraints and forces there are, and not on where they are. It is
-//! found once, when a System is built.
+//! Structure: properties of a System that follow from its connections and not from positions. They are found once, when
+//! the System is built: the pattern of A and its order of elimination, the chains, the contacts.
 
 pub(crate) mod chains;
 mod contacts;

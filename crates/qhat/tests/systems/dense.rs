@@ -44,6 +44,41 @@ pub fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     Some(b)
 }
 
+/// Eigenvalues of a symmetric matrix of n rows and, in the same order, its eigenvectors of length 1, by Jacobi's
+/// method: rotations in the plane of two coordinates, each of which takes one entry off the diagonal, until none is
+/// left. Slow, and accurate to some ε of the largest entry in every eigenvalue.
+pub fn eigen(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
+    assert_eq!(a.len(), n * n);
+    let rotated = |x: f64, y: f64, (cosine, sine): (f64, f64)| (cosine * x - sine * y, sine * x + cosine * y);
+    let mut vectors = vec![vec![0.0; n]; n];
+    (0..n).for_each(|k| vectors[k][k] = 1.0);
+    let pairs = || (0..n).flat_map(move |p| (p + 1..n).map(move |q| (p, q)));
+    let roundoff = f64::EPSILON * largest(&a);
+    // Convergence is quadratic: matrices of some hundred rows take about ten sweeps.
+    for _ in 0..50 {
+        if pairs().all(|(p, q)| a[p * n + q].abs() <= roundoff) {
+            return ((0..n).map(|k| a[k * n + k]).collect(), vectors);
+        }
+        for (p, q) in pairs().collect::<Vec<_>>() {
+            if a[p * n + q] == 0.0 {
+                continue;
+            }
+            let slope = (a[q * n + q] - a[p * n + p]) / (2.0 * a[p * n + q]);
+            let tangent = 1.0_f64.copysign(slope) / (slope.abs() + slope.hypot(1.0));
+            let cosine = 1.0 / tangent.hypot(1.0);
+            let turn = (cosine, cosine * tangent);
+            for k in 0..n {
+                (a[k * n + p], a[k * n + q]) = rotated(a[k * n + p], a[k * n + q], turn);
+            }
+            for k in 0..n {
+                (a[p * n + k], a[q * n + k]) = rotated(a[p * n + k], a[q * n + k], turn);
+                (vectors[p][k], vectors[q][k]) = rotated(vectors[p][k], vectors[q][k], turn);
+            }
+        }
+    }
+    panic!("no eigenvalues after 50 sweeps");
+}
+
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,8 +1,8 @@
 //! Systems that several tests share, built through the public door.
-#![allow(dead_code, reason = "each test file uses some of them")]
-#![allow(unreachable_pub, reason = "a module of several test crates, each of which is its whole world")]
+#![allow(unreachable_pub, reason = "a module of a test crate, which is its whole world")]
 
 pub mod dense;
+pub mod open_chains;
 pub mod random;
 pub mod swing;
 
@@ -12,7 +12,10 @@ use qhat::{Dimension, Distance, Feedback, Gravity, Integrator, Nail, Particle, P
 
 pub const G: f64 = 9.81;
 
-/// The id of the particle at a place: that of any system that has so many.
+/// More particles than any test names by place.
+const MOST_IDS: usize = 20_000;
+
+/// The id of the particle at a place, that of any system that has so many.
 pub fn id(place: usize) -> ParticleId {
     static IDS: LazyLock<Vec<ParticleId>> = LazyLock::new(|| {
         let mut builder = System::builder(Dimension::Two);
@@ -21,8 +24,13 @@ pub fn id(place: usize) -> ParticleId {
     IDS[place]
 }
 
-/// More particles than any test names by place.
-const MOST_IDS: usize = 20_000;
+/// A frame of a page [s].
+pub const FRAME: f64 = 1.0 / 60.0;
+
+/// How many times as many random cases `make fuzz` asks for, in QHAT_FUZZ; 1 without it.
+pub fn fuzz() -> u64 {
+    std::env::var("QHAT_FUZZ").map_or(1, |times| times.parse().expect("QHAT_FUZZ is a whole number"))
+}
 
 pub fn gravity() -> Gravity {
     Gravity { acceleration: [0.0, -G, 0.0] }
@@ -119,8 +127,8 @@ pub fn net(n: usize) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// A Warren truss of equilateral triangles with `panels` panels of 1 m, held at both ends of its bottom chord: on a pin and
-/// on a roller that a vertical rod of 1 m carries. `braced` adds one redundant rod.
+/// A Warren truss of equilateral triangles with `panels` panels of 1 m, held at both ends of its bottom chord: on a pin
+/// and on a roller that a vertical rod of 1 m carries. `braced` adds one redundant rod.
 pub fn truss(panels: usize, braced: bool) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let height = 0.75_f64.sqrt();

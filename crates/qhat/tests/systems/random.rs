@@ -67,8 +67,8 @@ pub fn dimension(d: usize) -> Dimension {
     if d == 2 { Dimension::Two } else { Dimension::Three }
 }
 
-/// A tree of rods of either form, a fixed root, a nail of either form, every kind of force and feedback. Neither C nor Ċ is
-/// zero, and the rows are independent.
+/// A tree of rods of either form, a fixed root, a nail of either form, every kind of force and feedback. Neither C nor
+/// Ċ is zero, and the rows are independent.
 pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
     let points = random.points(particles, d, if particles > 12 { 0.2 } else { 0.5 });
     let mut builder = System::builder(dimension(d));

@@ -3,7 +3,8 @@
 use super::G;
 use qhat::Simulation;
 
-/// T = 4 √(L/g) K(sin(θ₀/2)) = 2π √(L/g) / agm(1, cos(θ₀/2)) [s]; L [m] is I/(m c) for a body that hangs c off its centre.
+/// T = 4 √(L/g) K(sin(θ₀/2)) = 2π √(L/g) / agm(1, cos(θ₀/2)) [s]; L [m] is I/(m c) for a body that hangs c off its
+/// centre.
 pub fn period(length: f64, amplitude: f64) -> f64 {
     let (mut a, mut b) = (1.0, libm::cos(0.5 * amplitude));
     for _ in 0..10 {

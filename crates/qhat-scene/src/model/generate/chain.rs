@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Chain {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
     /// The number of particles, 2 or more.
     #[schemars(range(min = 2, max = 1_000_000))]
     pub(crate) count: u32,
-    /// Where the first particle starts [m].
+    /// The position of the first particle at the start [m].
     pub(crate) from: Vector,
-    /// Where the last particle starts [m].
+    /// The position of the last particle at the start [m].
     pub(crate) to: Vector,
-    /// How far the middle hangs out of the straight line [m], along a parabola; straight if left out.
+    /// The offset of the middle from the straight line [m], along a parabola; straight if left out.
     #[serde(default)]
     pub(crate) sag: Option<Vector>,
     /// The mass of each particle [kg], above 0.
@@ -28,10 +28,10 @@ pub(crate) struct Chain {
     /// The velocity of each particle at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// Whether all its particles are held where they start.
+    /// Whether all its particles stay at their positions.
     #[serde(default)]
     pub(crate) fixed: bool,
-    /// What connects neighbours; rods if left out.
+    /// The links between neighbours; rods if left out.
     #[serde(default)]
     pub(crate) link: Link,
 }

@@ -1,6 +1,7 @@
-//! `[[generate]]`: many particles from few numbers, one kind a file.
+//! `[[generate]]`: blocks of many particles from few numbers, one kind to a file.
 //!
-//! To add a kind: write one file here with its keys and its `Plan`, and name it in the list below.
+//! A new kind costs one file here with its keys and its `Plan`, its name in the enum below, and its name in the list
+//! `kinds!` below.
 
 mod chain;
 mod net;
@@ -8,11 +9,11 @@ mod ring;
 mod truss;
 
 use super::Vector;
-use super::constraint::DistanceForm;
+use super::rods::DistanceForm;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Particles by the dozen, with what connects them.
+/// A block of many particles with the links between them.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub(crate) enum Generate {
@@ -22,7 +23,7 @@ pub(crate) enum Generate {
     Ring(ring::Ring),
 }
 
-/// What connects neighbours.
+/// The links between neighbours.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub(crate) enum Link {
@@ -37,42 +38,42 @@ impl Default for Link {
     }
 }
 
-/// Rods as long as the distances at the start.
+/// Rods with the distances at the start as their lengths.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RodLink {
-    /// The function that is held at zero: the length's error, or that of its square (the classic one).
+    /// The function that is held at zero: the error of the length, or of its square (the classic form).
     #[serde(default)]
     pub(crate) form: DistanceForm,
-    /// How far each gives way [m/N], 0 (rigid) or more: under a tension T it is longer by this times T.
+    /// The compliance of each rod [m/N], 0 (rigid) or more: under a tension T a rod is longer by compliance · T.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) compliance: f64,
-    /// A damper beside the compliance [N·s/m], 0 or more; a rigid rod has no motion to damp.
+    /// The damping beside the compliance [N·s/m], 0 or more; a rigid rod has no motion to damp.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) damping: f64,
 }
 
-/// Springs that do not pull at the start.
+/// Springs with the distances at the start as their rest lengths.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SpringLink {
-    /// The stiffness of each [N/m], 0 or more.
+    /// The stiffness of each spring [N/m], 0 or more.
     #[schemars(range(min = 0.0))]
     pub(crate) stiffness: f64,
-    /// The damping of each [N·s/m], 0 or more.
+    /// The damping of each spring [N·s/m], 0 or more.
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub(crate) damping: f64,
 }
 
-/// Nothing: the particles alone.
+/// No links: the particles alone.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NoLink {}
 
-/// What is the same for every kind and every particle of it.
+/// The keys that every kind has; they hold for every particle of a block.
 pub(crate) struct Common<'a> {
     pub(crate) mass: f64,
     pub(crate) velocity: Option<&'a Vector>,
@@ -80,7 +81,7 @@ pub(crate) struct Common<'a> {
     pub(crate) link: &'a Link,
 }
 
-/// Particles and the pairs of them that are linked, by their place in the list.
+/// The particles of a block, and the pairs of linked particles by their places in the list.
 #[derive(Debug, Default)]
 pub(crate) struct Plan {
     pub(crate) particles: Vec<(String, Vec<f64>)>,
@@ -88,7 +89,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Adds a particle and tells its place.
+    /// Adds a particle and returns its place.
     fn particle(&mut self, name: String, at: Vec<f64>) -> usize {
         self.particles.push((name, at));
         self.particles.len() - 1
@@ -98,12 +99,12 @@ impl Plan {
 macro_rules! kinds {
     ($($kind:ident),*) => {
         impl Generate {
-            /// How many particles it makes, without making them.
+            /// The number of particles of the block; makes none.
             pub(crate) fn count(&self) -> u64 {
                 match self { $(Generate::$kind(generate) => generate.count(),)* }
             }
 
-            /// What it makes.
+            /// The particles and links of the block.
             pub(crate) fn plan(&self) -> Plan {
                 match self { $(Generate::$kind(generate) => generate.plan(),)* }
             }

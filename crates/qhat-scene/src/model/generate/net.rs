@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Net {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
     /// The number of rows, 2 or more.
     #[schemars(range(min = 2, max = 1_000_000))]
@@ -17,13 +17,13 @@ pub(crate) struct Net {
     /// The number of columns, 2 or more.
     #[schemars(range(min = 2, max = 1_000_000))]
     pub(crate) columns: u32,
-    /// Where the first particle starts [m].
+    /// The position of the first particle at the start [m].
     pub(crate) from: Vector,
-    /// The way from one column to the next [m].
+    /// The offset from one column to the next [m].
     pub(crate) across: Vector,
-    /// The way from one row to the next [m].
+    /// The offset from one row to the next [m].
     pub(crate) down: Vector,
-    /// How far the middle of every row hangs out of the straight line [m], along a parabola; straight if left out.
+    /// The offset of the middle of every row from the straight line [m], along a parabola; straight if left out.
     #[serde(default)]
     pub(crate) sag: Option<Vector>,
     /// The mass of each particle [kg], above 0.
@@ -33,10 +33,10 @@ pub(crate) struct Net {
     /// The velocity of each particle at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// Whether all its particles are held where they start.
+    /// Whether all its particles stay at their positions.
     #[serde(default)]
     pub(crate) fixed: bool,
-    /// What connects neighbours; rods if left out.
+    /// The links between neighbours; rods if left out.
     #[serde(default)]
     pub(crate) link: Link,
 }

@@ -10,14 +10,14 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Ring {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
     /// The number of particles, 3 or more.
     #[schemars(range(min = 3, max = 1_000_000))]
     pub(crate) count: u32,
-    /// Where its centre is [m].
+    /// The centre of the circle [m].
     pub(crate) center: Vector,
-    /// Its radius [m], above 0.
+    /// The radius of the circle [m], above 0.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) radius: f64,
     /// The mass of each particle [kg], above 0.
@@ -27,10 +27,10 @@ pub(crate) struct Ring {
     /// The velocity of each particle at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// Whether all its particles are held where they start.
+    /// Whether all its particles stay at their positions.
     #[serde(default)]
     pub(crate) fixed: bool,
-    /// What connects neighbours; rods if left out.
+    /// The links between neighbours; rods if left out.
     #[serde(default)]
     pub(crate) link: Link,
 }

@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Truss {
-    /// What the ids of its particles begin with.
+    /// The beginning of the ids of its particles.
     pub(crate) prefix: Id,
-    /// How its triangles stand.
+    /// The pattern of its triangles.
     #[serde(default)]
     pub(crate) pattern: Pattern,
     /// The number of bays, 1 or more.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub(crate) bays: u32,
-    /// Where the bottom begins [m].
+    /// The position at which the bottom begins [m].
     pub(crate) from: Vector,
-    /// Where the bottom ends [m].
+    /// The position at which the bottom ends [m].
     pub(crate) to: Vector,
-    /// The way from the bottom to the top [m].
+    /// The offset from the bottom to the top [m].
     pub(crate) rise: Vector,
     /// The mass of each particle [kg], above 0.
     #[serde(default = "one")]
@@ -30,24 +30,24 @@ pub(crate) struct Truss {
     /// The velocity of each particle at the start [m/s]; at rest if left out.
     #[serde(default)]
     pub(crate) velocity: Option<Vector>,
-    /// Whether all its particles are held where they start.
+    /// Whether all its particles stay at their positions.
     #[serde(default)]
     pub(crate) fixed: bool,
-    /// What connects neighbours; rods if left out.
+    /// The links between neighbours; rods if left out.
     #[serde(default)]
     pub(crate) link: Link,
 }
 
-/// How the triangles of a truss stand.
+/// The pattern of the triangles of a truss.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Pattern {
-    /// A top particle above the middle of every bay: isosceles triangles, no more rods than needed.
+    /// A top particle above the middle of every bay: isosceles triangles, no redundant rod.
     #[default]
     Warren,
-    /// A top particle above every bottom one, and one diagonal a bay, falling towards the middle.
+    /// A top particle above every bottom particle, and one diagonal a bay, falling towards the middle.
     Pratt,
-    /// A top particle above every bottom one, and both diagonals a bay: one rod too many in each.
+    /// A top particle above every bottom particle, and both diagonals a bay: one redundant rod in each bay.
     Crossed,
 }
 

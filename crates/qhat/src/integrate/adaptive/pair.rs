@@ -1,25 +1,26 @@
-//! Embedded Runge–Kutta pairs: substeps by the estimated error, projected after each.
+//! Embedded Runge–Kutta pairs: substeps by the estimated error, each projected onto the constraints.
 
-use super::{Attempt, End, Frame, MISSED, Outcome, Stepper, begin, check_length};
+use super::{Attempt, End, Outcome, Stepper, Substeps, accepts, begin, check_length};
 use crate::chains::{Chains, Projected};
 use crate::drift::Drift;
 use crate::error::StepError;
-use crate::integrate::Workspace;
 use crate::integrate::events::EventStepper;
 use crate::integrate::field::{ChainField, Field, GeneralField};
+use crate::integrate::frame::Frame;
 use crate::integrate::runge_kutta::{Combination, Squares, Stages, Tableau, advance};
 use crate::linalg::eight::{Largest, vector_unit};
 use crate::report::{Solver, StepReport};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
+use crate::structure::ChainPlan;
 use crate::system::System;
 
-/// A speed that crosses less than this part of the system's extent in one substep counts as rest.
+/// Part of the extent of the system below which the way of the fastest particle in one substep counts as rest.
 const AT_REST: f64 = 1e-3;
 
-/// The estimate is a mean over all coordinates, while what matters may happen in a few. With this factor the default tolerance
-/// of 1e-4 left energy errors of 1e-7 to 3e-5 after 2 s of whipping chains; four times looser, substeps ran against the
-/// bound of stability, and chains of 1000 links took more of them.
+/// Factor on the error estimate, which is a mean over all coordinates, while a large error may be in a few. With this
+/// factor the default tolerance of 1e-4 left energy errors of 1e-7 to 3e-5 after 2 s of whipping chains; four times
+/// looser, substeps ran against the bound of stability, and chains of 1000 links took more of them.
 const ERROR_SCALE: f64 = 4.0;
 
 /// A method with an error estimate.
@@ -33,7 +34,7 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// Solves of the equation in one substep.
+    /// Number of solves of the equation in one substep.
     pub(crate) fn stages(&self) -> usize {
         self.tableau.stages
     }
@@ -53,7 +54,7 @@ impl Pair {
     }
 }
 
-/// A pair on its way over one frame.
+/// A pair under way over one frame.
 pub(crate) struct PairStepper<'a, F> {
     pair: &'a Pair,
     pub(crate) field: F,
@@ -62,97 +63,94 @@ pub(crate) struct PairStepper<'a, F> {
     pub(crate) stages: &'a mut Stages,
 }
 
-/// Carries the state over one frame.
+/// Advances the state by one frame.
 pub(crate) fn frame<const D: usize>(
     pair: &Pair,
-    system: &System,
+    frame: &mut Frame<'_>,
     state: &mut State,
-    settings: &Settings,
-    length: f64,
-    workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
-    carry_on::<D>(pair, system, state, settings, length, usize::MAX, workspace).map(|(report, _)| report)
+    carry_on::<D>(pair, frame, state, usize::MAX).map(|(report, _)| report)
 }
 
-/// Carries the state over one frame, or as far as so many substeps go: open chains in chains, anything else, and what becomes
-/// singular on the way, in the user's order. Says whether it is the whole.
+/// Advances the state by one frame, or as far as so many substeps go; says whether it is the whole frame. Open chains
+/// are solved by `chains/`; every other system, and chains that become singular on the way, by the general equation.
 pub(crate) fn carry_on<const D: usize>(
     pair: &Pair,
-    system: &System,
+    frame: &mut Frame<'_>,
     state: &mut State,
-    settings: &Settings,
-    length: f64,
     limit: usize,
-    workspace: &mut Workspace,
 ) -> Result<(StepReport, bool), StepError> {
-    check_length(length)?;
-    let mut frame = Frame::new(system, settings, state, length).within(limit);
+    check_length(frame.length)?;
+    let system = frame.system;
+    let substeps = Substeps::new(frame, state).within(limit);
     let mut carry = state.carry.take();
+    let mut run = PairFrame { pair, frame, substeps };
     if let Some(plan) = &system.chains
         && !carry.as_ref().is_some_and(|carry| carry.deficient)
     {
+        run.substeps.report.solver = Solver::Chains;
+        match run.along_chains::<D>(plan, state)? {
+            End::Singular => carry = None,
+            end => return Ok((run.substeps.finish(state, None), end == End::Whole)),
+        }
+    }
+    run.substeps.report.solver = Solver::Rows;
+    let factorizations = run.frame.factorizations();
+    begin::<D>(run.frame, state, carry);
+    let end = run.by_rows::<D>(state)?;
+    let PairFrame { frame, mut substeps, .. } = run;
+    if end == End::Whole && system.contacts.is_empty() {
+        // A frame that ran out of work may have ended on a rejected substep: the factor is then that of one of its
+        // stages.
+        frame.workspace.note_factored(state);
+    }
+    substeps.report.factorizations += frame.factorizations() - factorizations;
+    let equation = &frame.workspace.equation;
+    Ok((substeps.finish(state, Some((equation.lambda.clone(), equation))), end == End::Whole))
+}
+
+/// A pair, the frame that it advances by, and the substeps of that frame.
+struct PairFrame<'a, 'f> {
+    pair: &'a Pair,
+    frame: &'a mut Frame<'f>,
+    substeps: Substeps<'f>,
+}
+
+impl PairFrame<'_, '_> {
+    /// The substeps of open chains, eight side by side.
+    fn along_chains<const D: usize>(&mut self, plan: &ChainPlan, state: &mut State) -> Result<End, StepError> {
+        let Frame { system, settings, ref mut workspace, .. } = *self.frame;
         let mut stages = std::mem::take(&mut workspace.stages);
         let chains = workspace.chains.get_or_insert_with(|| Chains::new(system, plan));
         let field = ChainField::<D> { system, plan, chains };
-        let end = run(pair, field, &mut stages, &mut frame, state);
+        let mut stepper = PairStepper { pair: self.pair, field, system, settings, stages: &mut stages };
+        stepper.begin(state);
+        let end = self.substeps.run(&mut stepper, state);
         workspace.stages = stages;
-        frame.report.solver = Solver::Chains;
-        match end? {
-            End::Singular => carry = None,
-            end => return Ok((frame.finish(state, None), end == End::Whole)),
-        }
+        end
     }
-    let factorizations = workspace.equation.solver.factorizations;
-    begin::<D>(system, state, carry, workspace);
-    workspace.factored_at.clear();
-    let mut stages = std::mem::take(&mut workspace.stages);
-    let field = GeneralField::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
-    let end = if system.contacts.is_empty() {
-        run(pair, field, &mut stages, &mut frame, state)
-    } else {
-        run_switching(pair, field, &mut stages, &mut frame, state, length)
-    };
-    workspace.stages = stages;
-    let end = end?;
-    frame.report.solver = Solver::Rows;
-    if end == End::Whole && system.contacts.is_empty() {
-        // What ran out of work may have ended on a substep that was taken back: the factor is then that of one of its stages.
-        workspace.note_factored(state);
+
+    /// The substeps of any system, which end at events where there are contacts; events are reported in any case.
+    fn by_rows<const D: usize>(&mut self, state: &mut State) -> Result<End, StepError> {
+        let PairFrame { pair, frame, substeps } = self;
+        let Frame { system, settings, length, ref mut workspace } = **frame;
+        workspace.equation.solver.memory.forget();
+        let mut stages = std::mem::take(&mut workspace.stages);
+        let field = GeneralField::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
+        let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages };
+        stepper.begin(state);
+        let end = if system.contacts.is_empty() {
+            substeps.run(&mut stepper, state)
+        } else {
+            EventStepper::begin(stepper, state, length).and_then(|mut stepper| {
+                let end = substeps.run(&mut stepper, state);
+                substeps.report.events.append(&mut stepper.events);
+                end
+            })
+        };
+        workspace.stages = stages;
+        end
     }
-    frame.report.factorizations += workspace.equation.solver.factorizations - factorizations;
-    let lambda = workspace.equation.lambda.clone();
-    Ok((frame.finish(state, Some((lambda, &workspace.equation))), end == End::Whole))
-}
-
-fn run<F: Field>(
-    pair: &Pair,
-    mut field: F,
-    stages: &mut Stages,
-    frame: &mut Frame<'_>,
-    state: &mut State,
-) -> Result<End, StepError> {
-    stages.resize(field.blocks());
-    field.begin(state, &mut stages.q, &mut stages.qd);
-    let (system, settings) = (frame.system, frame.settings);
-    frame.run(&mut PairStepper { pair, field, system, settings, stages }, state)
-}
-
-/// The same with events; they are told in any case.
-fn run_switching<const D: usize>(
-    pair: &Pair,
-    mut field: GeneralField<'_, D>,
-    stages: &mut Stages,
-    frame: &mut Frame<'_>,
-    state: &mut State,
-    length: f64,
-) -> Result<End, StepError> {
-    stages.resize(field.blocks());
-    field.begin(state, &mut stages.q, &mut stages.qd);
-    let (system, settings) = (frame.system, frame.settings);
-    let mut switching = EventStepper::begin(PairStepper { pair, field, system, settings, stages }, state, length)?;
-    let end = frame.run(&mut switching, state);
-    frame.report.events.append(&mut switching.events);
-    end
 }
 
 impl<F: Field> Stepper for PairStepper<'_, F> {
@@ -173,7 +171,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
             return Outcome::NotMet;
         }
         let mut attempt = Attempt { h, error, iterations: 0, dissipation: work.dissipation, drives: work.drives };
-        if error > MISSED * self.settings.tolerance || error.is_nan() {
+        if !accepts(error, self.settings) {
             return Outcome::Met(attempt);
         }
         let Stages { next_q, next_qd, .. } = self.stages;
@@ -206,10 +204,17 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
 }
 
 impl<F: Field> PairStepper<'_, F> {
-    /// The estimate, positions relative to the extent and velocities to the fastest, whichever is larger.
+    /// Takes the motion of a state.
+    fn begin(&mut self, state: &State) {
+        self.stages.resize(self.field.blocks());
+        self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
+    }
+
+    /// The error estimate: that of positions relative to the extent, or of velocities relative to the fastest,
+    /// whichever is larger.
     fn error(&self, h: f64) -> f64 {
         let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
-        // What is at rest but for roundoff has no speed to compare with.
+        // A system at rest to roundoff has no speed to compare with.
         let speed = fastest.max(AT_REST * self.system.extent / h);
         let coarse = self.pair.coarse.as_ref().unwrap_or(&self.pair.estimate);
         let coordinates = self.system.coordinate_count().max(1) as f64;
@@ -232,11 +237,12 @@ impl<F: Field> PairStepper<'_, F> {
 mod tests {
     use super::super::dop853::DOP853;
     use super::*;
+    use crate::integrate::Workspace;
     use crate::space::Dimension;
     use crate::system::Particle;
     use crate::{Distance, Gravity};
 
-    /// The work ends on a substep that was taken back: what is solved next must not use the factor of one of its stages.
+    /// The work ends on a rejected substep: the next solve must not use the factor of one of its stages.
     #[test]
     fn work_that_runs_out_leaves_no_factor_of_a_stage() {
         let mut builder = System::builder(Dimension::Two);
@@ -252,8 +258,8 @@ mod tests {
         let (system, start) = builder.build().unwrap();
         let settings = Settings::default();
         let (mut state, mut workspace) = (start.clone(), Workspace::new(&system));
-        let (report, is_whole) =
-            carry_on::<2>(&DOP853, &system, &mut state, &settings, 2.0, 1, &mut workspace).unwrap();
+        let mut frame = Frame { system: &system, settings: &settings, workspace: &mut workspace, length: 2.0 };
+        let (report, is_whole) = carry_on::<2>(&DOP853, &mut frame, &mut state, 1).unwrap();
         assert_eq!((report.substeps, report.rejected, is_whole), (0, 1, false));
         assert_eq!(state.q, start.q);
         let expected = Workspace::new(&system).solve::<2>(&system, &state, &Feedback::NONE).lambda.clone();

@@ -1,12 +1,13 @@
-//! When an event is: the length of the substep at which the first margin vanishes.
+//! The time of an event: the length of the substep at which the first event function reaches zero.
 //!
-//! Bracketed, and found by the secant through the bracket's ends, kept off both (regula falsi), from the start of the substep every
-//! time. So an event is as accurate as the method, whatever its order. A margin that turns negative and back within a substep is seen
-//! in the middle, from the cubic through both ends; what is quicker than that is missed.
+//! The length is bracketed, and found by the secant through the ends of the bracket, kept off both (regula falsi).
+//! Every length is tried from the start of the substep, so an event is as accurate as the method, whatever its order.
+//! An event function that turns negative and back within a substep is seen in the middle, from the cubic through both
+//! ends; a quicker one is missed.
 //!
-//! A force that jumps where a contact slides over an edge, or that grows without bound as friction comes near the point from which it
-//! has no answer, brackets a point and no root. The motion goes on from the near end: the contact is let go there for 1e-12 of a
-//! frame, and decided anew beyond.
+//! A force that jumps where a contact slides over an edge, or that grows without bound as friction comes near the
+//! point from which it has no answer, brackets a point and no root. The motion then goes on from the near end: the
+//! contact is open there for 1e-12 of a frame, and its mode is decided again beyond.
 
 use super::{Attempt, EventStepper, Outcome};
 use crate::contact::{EventCause, first_violated};
@@ -14,21 +15,21 @@ use crate::modes::Mode;
 use crate::point::Motion;
 use crate::state::State;
 
-/// How near zero a margin must come that may be on either side of it: it costs an attempt more than 1 would, and leaves the time of
-/// an impact good to 1e-12 of the extent over the speed.
+/// How near zero an event function must come that may be on either side of it. It costs an attempt more than 1 would,
+/// and leaves the time of an impact good to 1e-12 of the extent over the speed.
 const SHARP: f64 = 0.01;
 
-/// Attempts at one event: the secant needed three to nine where it was watched, halving forty.
+/// Attempts at one event. The secant took three to nine where it was watched; halving takes forty.
 const ATTEMPTS: usize = 60;
 
-/// Where a bracket is this part of the frame, its ends are the same time.
+/// Length of a bracket, in frames, at which its ends count as the same time.
 const SAME_TIME: f64 = 1e-13;
 
 impl<const D: usize> EventStepper<'_, D> {
-    /// The length at which the first margin is met, between 0 and `high`, at which some are not.
+    /// The length at which the first event function is met, between 0 and `high`, at which some are violated.
     pub(super) fn locate(&mut self, state: &State, mut high: f64) -> Result<(f64, Attempt), Outcome> {
         let mut low = 0.0;
-        let mut at_low = self.at_beginning.clone();
+        let mut at_low = self.event_functions_at_start.clone();
         let mut at_high = self.event_functions.clone();
         let mut weight = 1.0;
         let mut was_low = false;
@@ -36,30 +37,28 @@ impl<const D: usize> EventStepper<'_, D> {
             let first = first_violated(&at_high);
             let cause = EventCause::of(first, self.modes.contacts.len());
             let is_two_sided = cause.is_two_sided(&self.modes);
-            // Where a force jumps to the other side of zero, or its direction jumps.
+            // The cause if a force, or its direction, jumps across zero there.
             let jump = match cause {
-                EventCause::Normal(contact) | EventCause::Friction(contact) | EventCause::Turn(contact)
-                    if !is_two_sided =>
-                {
-                    Some(EventCause::Singular(contact))
+                EventCause::Normal(k) | EventCause::Friction(k) | EventCause::Turn(k) if !is_two_sided => {
+                    Some(EventCause::Singular(k))
                 }
                 _ => None,
             };
-            // Aimed at the middle of what is allowed.
+            // The aim is the middle of the allowed values.
             let aim = if is_two_sided { 0.0 } else { 0.5 };
             let (g_low, g_high) = ((at_low[first] + aim).max(0.1 * SHARP), at_high[first] + aim);
-            // The end that stays for the second time counts half.
+            // An end of the bracket that stays for the second time counts half.
             let (g_low, g_high) = if was_low { (g_low, weight * g_high) } else { (weight * g_low, g_high) };
             let middle = if g_low.is_finite() { g_low / (g_low - g_high) } else { 0.5 };
             let h = low + middle.clamp(1e-3, 1.0 - 1e-3) * (high - low);
             let attempt = self.try_length(state, h)?;
-            let is_violated = self.event_functions.iter().any(|&margin| margin < -1.0);
-            // What opens, slips or breaks must be past the point, so that it is not taken back.
-            let margin = self.event_functions[first];
-            let is_there = !is_violated && margin <= if is_two_sided { SHARP } else { 0.0 };
+            let is_violated = self.event_functions.iter().any(|&function| function < -1.0);
+            // A contact that opens or slips, and a constraint that breaks, must be past the point, so that the next
+            // substep does not take it back.
+            let is_there = !is_violated && self.event_functions[first] <= if is_two_sided { SHARP } else { 0.0 };
             if is_there || high - low < SAME_TIME * self.frame {
                 if let Some(jump) = jump.filter(|_| !is_there) {
-                    // Nothing of what lies beyond can be kept.
+                    // The motion beyond the jump cannot be kept.
                     let attempt =
                         if low > 0.0 { self.try_length(state, low)? } else { return Err(self.stay(state, jump)) };
                     self.cause = Some(jump);
@@ -81,7 +80,7 @@ impl<const D: usize> EventStepper<'_, D> {
         Err(Outcome::NotMet)
     }
 
-    /// Whether something open is closed in the middle of the substep tried last, by the cubic through its ends.
+    /// Whether an open contact is closed in the middle of the substep tried last, by the cubic through its ends.
     pub(super) fn is_missed(&mut self, h: f64, t: f64) -> bool {
         let (system, settings, workspace) = (self.run.system, self.run.settings, &mut *self.run.field.workspace);
         if !self.modes.contacts.contains(&Mode::Open) {

@@ -1,96 +1,106 @@
-//! A pair that stops at events: where a contact closes, opens, begins or ceases to slip, and where something breaks.
+//! EventStepper: an embedded pair whose substeps end at events, where a contact closes, opens, begins or ceases to
+//! slip, and where a constraint breaks.
 //!
-//! Between events the modes of all contacts stand, and a substep is a substep of the pair. What is watched are the margins of
-//! `contact/event_functions.rs`, all at least −1 while the modes are right.
-//!
-//! A substep at whose end one lies below −1 is tried again with a length at which the first of them is between −1 and 1 (`locate.rs`).
+//! Between events the modes of all contacts stand, and a substep is a substep of the pair. Watched are the event
+//! functions of `contact/event_functions.rs`, all at least −1 while the modes are right. If one of them is below −1
+//! at the end of a substep, the substep is tried again with a length at which the first of them is between −1 and 1
+//! (`locate.rs`); there `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn
+//! of slips.
 
 mod locate;
+mod slip;
 
 use super::Workspace;
 use super::adaptive::pair::PairStepper;
-use super::adaptive::{Attempt, MISSED, Outcome, Stepper};
+use super::adaptive::{Attempt, Outcome, Stepper, accepts};
 use super::field::{Field, GeneralField, pack, unpack};
 use crate::contact::{
-    EventCause, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE, rest_speed, write_event_functions,
-    write_events,
+    EventCause, EventFunctions, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE, rest_speed,
 };
 use crate::drift::Drift;
 use crate::error::StepError;
 use crate::modes::{Mode, Modes};
-use crate::multiplier::{Beginning, Friction, SolveFor};
+use crate::multiplier::SolveFor;
 use crate::point::Motion;
 use crate::report::Event;
 use crate::settings::Feedback;
 use crate::state::State;
+use slip::AtStart;
 
-/// The length of a substep past a point at which a force is not defined, in frames: ten times what `locate.rs` takes for one time.
-/// What falls that long has not moved.
+/// Length of a substep past a point at which a force is not defined, in frames: ten times what `locate.rs` takes for
+/// one time. A fall of that length does not move anything.
 const SKIP: f64 = 1e-12;
 
-/// A substep shorter than this part of the frame will not do where a longer one did not, because friction has no answer: above `SHORTEST`.
+/// Length of a substep, in frames, below which friction without an answer is taken to stay without one: above
+/// `SHORTEST` of the frame loop.
 const NO_ANSWER: f64 = 1e-11;
 
-/// The shortest substep for the sake of a rest_speed slip that turns, in frames: it is dissipative whichever way it goes.
+/// The shortest bound, in frames, that a slow slip that turns puts on a substep: friction is dissipative whichever
+/// way the slip goes.
 const SLOWEST: f64 = 1e-4;
 
-/// Events of one frame after which nothing bounces any more, and after which they are too many to be real.
+/// Events of one frame after which no impact bounces any more.
 const BOUNCING: usize = 1000;
+
+/// Events of one frame after which the step fails: so many cannot be real.
 const TOO_MANY: usize = 20_000;
 
-/// A pair on its way over one frame of a system that contacts.
+/// A pair under way over one frame of a system with contacts.
 pub(super) struct EventStepper<'a, const D: usize> {
     run: PairStepper<'a, GeneralField<'a, D>>,
     /// Length of the frame [s].
     frame: f64,
     pub(super) events: Vec<Event>,
+    /// Events resolved in this frame.
     count: usize,
+    /// The modes at the start of the substep.
     modes: Modes,
-    /// What ends the substep tried last.
+    /// The event that ends the substep tried last.
     cause: Option<EventCause>,
-    /// Whether that happens where it began.
+    /// Whether that event is at the start of the substep, which then has no length.
     stays: bool,
-    /// A contact that is let go for one short substep, to come past a point at which its force is not defined.
+    /// A contact that is open for one short substep, to pass a point at which its force is not defined.
     skipped: Option<usize>,
+    /// A resolution that failed; the next attempt returns it.
     failure: Option<StepError>,
+    /// Event functions at the end of the substep tried last, and at its start.
     event_functions: Vec<f64>,
-    /// Those where the substep begins.
-    at_beginning: Vec<f64>,
-    beginning: Beginning,
+    event_functions_at_start: Vec<f64>,
+    /// Ċ, λ and J at the start of the substep.
+    at_start: AtStart,
     normals: Normals,
 }
 
 impl<'a, const D: usize> EventStepper<'a, D> {
-    /// From a state: the modes are decided anew, since between two frames anything may have changed.
+    /// From a state. The modes are decided again, since anything may have changed between two frames.
     pub(super) fn begin(
         run: PairStepper<'a, GeneralField<'a, D>>,
         state: &mut State,
         frame: f64,
     ) -> Result<Self, StepError> {
-        let modes = state.modes.clone();
-        let mut switching = EventStepper {
+        let mut stepper = EventStepper {
             run,
             frame,
             events: Vec::new(),
             count: 0,
-            modes,
+            modes: state.modes.clone(),
             cause: None,
             stays: false,
             skipped: None,
             failure: None,
             event_functions: Vec::new(),
-            at_beginning: Vec::new(),
-            beginning: Beginning::default(),
+            event_functions_at_start: Vec::new(),
+            at_start: AtStart::default(),
             normals: Normals::default(),
         };
-        let workspace = &mut *switching.run.field.workspace;
+        let workspace = &mut *stepper.run.field.workspace;
         workspace.q.copy_from_slice(&state.q);
         workspace.qd.copy_from_slice(&state.qd);
-        switching.resolve(state, state.t)?;
-        Ok(switching)
+        stepper.resolve(state, state.t)?;
+        Ok(stepper)
     }
 
-    /// What the modes must be now, and how fast everything goes on.
+    /// Resolves the event at hand, if any: decides the modes and the velocities with which the motion goes on from t.
     fn resolve(&mut self, state: &mut State, t: f64) -> Result<(), StepError> {
         let (system, settings) = (self.run.system, self.run.settings);
         let workspace = &mut *self.run.field.workspace;
@@ -99,14 +109,13 @@ impl<'a, const D: usize> EventStepper<'a, D> {
             shortest_flight: if self.count < BOUNCING { Some(1e-3 * self.frame) } else { None },
             frame: self.frame,
         };
-        let before = self.modes.clone();
         let cause = self.cause.take();
-        if let Some(EventCause::Singular(contact)) = cause {
-            self.skipped = Some(contact);
+        if let Some(EventCause::Singular(k)) = cause {
+            self.skipped = Some(k);
         }
         let Workspace { equation, q, qd, .. } = workspace;
         let outcome = EventResolution::<D> { equation, system, q, qd, t, thresholds }.resolve(&mut self.modes, cause);
-        let resolved = outcome.map_err(|failure| {
+        let mut resolved = outcome.map_err(|failure| {
             let place = system.contacts.list[failure.contact].constraint;
             StepError::Jammed { time: t, constraint: system.constraints[place].name.clone() }
         })?;
@@ -115,15 +124,15 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         pack(&workspace.qd, &mut self.run.stages.qd);
         self.run.stages.is_first_known = false;
         self.run.field.is_factored = false;
-        write_events((&before, &self.modes), &resolved.impacts, (system, t), &mut self.events);
-        let equation = &self.run.field.workspace.equation;
-        self.beginning.Cd.clone_from(&equation.rows.Cd);
-        self.beginning.lambda.clone_from(&equation.lambda);
+        self.events.append(&mut resolved.events);
+        // The start of the next substep. The resolution evaluated all rows; `constrain` masks the inactive ones.
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
+        self.at_start.Cd.clone_from(&equation.rows.Cd);
+        self.at_start.lambda.clone_from(&equation.lambda);
         equation.constrain(system, Motion::<D> { q, qd, t });
         self.normals.begin::<D>(&equation.rows);
         self.write_event_functions(t);
-        self.at_beginning.clone_from(&self.event_functions);
+        self.event_functions_at_start.clone_from(&self.event_functions);
         self.count += usize::from(cause.is_some());
         if self.count >= TOO_MANY {
             return Err(StepError::TooManyEvents { time: t, events: self.count });
@@ -131,12 +140,11 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         Ok(())
     }
 
-    /// Tries a substep; its margins are at hand if it is good.
+    /// Tries a substep of h; if it is accepted, its event functions are at hand.
     fn try_length(&mut self, state: &State, h: f64) -> Result<Attempt, Outcome> {
-        let equation = &mut self.run.field.workspace.equation;
-        equation.friction.prepare::<D>(&self.beginning, &equation.rows, &self.run.system.inverse_mass, h);
+        self.at_start.prepare::<D>(self.run.system, &mut self.run.field.workspace.equation, h);
         match self.run.attempt(state, h, state.t + h) {
-            Outcome::Met(attempt) if attempt.error <= MISSED * self.run.settings.tolerance => {
+            Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => {
                 self.write_event_functions(state.t + h);
                 Ok(attempt)
             }
@@ -144,13 +152,13 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         }
     }
 
-    /// What slides and has lost its force, if anything slides.
+    /// The first sliding contact as one whose force has no answer, if any contact slides.
     fn without_answer(&self) -> Option<EventCause> {
-        let normal = self.friction().sliding.first()?.normal;
-        self.run.system.contacts.list.iter().position(|contact| contact.normal == normal).map(EventCause::Singular)
+        let sliding = self.run.field.workspace.equation.sliding.first()?;
+        Some(EventCause::Singular(sliding.contact))
     }
 
-    /// Stays where the substep began; what ends it there happens at once.
+    /// A substep without a length: its event is resolved where the substep began.
     fn stay(&mut self, state: &State, cause: EventCause) -> Outcome {
         self.run.turn_back(state);
         let PairStepper { field, stages, .. } = &mut self.run;
@@ -160,21 +168,25 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         Outcome::Met(Attempt { h: 0.0, error: 0.0, iterations: 0, dissipation: 0.0, drives: 0.0 })
     }
 
-    fn friction(&self) -> &Friction {
-        &self.run.field.workspace.equation.friction
-    }
-
+    /// Event functions at the motion in the workspace, with λ there.
     fn write_event_functions(&mut self, t: f64) {
         let EventStepper { run, modes, event_functions, frame, normals, .. } = self;
-        let (system, workspace) = (run.system, &mut *run.field.workspace);
+        let (system, settings, workspace) = (run.system, run.settings, &mut *run.field.workspace);
         let (equation, motion) = (&mut workspace.equation, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t });
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
         if is_closed || modes.broken.iter().any(|broken| !broken) {
             equation.solve(system, motion, &Feedback::NONE, true, SolveFor::Force);
         }
-        event_functions.clear();
         let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
-        write_event_functions::<D>(equation, system, run.settings, modes, (rest_speed, normals), event_functions);
+        EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);
+    }
+
+    /// Accepts the slips of the substep tried last: they are the directions at the start of the next one.
+    fn keep_slips(&mut self) {
+        for sliding in &mut self.run.field.workspace.equation.sliding {
+            sliding.slip.start();
+            self.modes.contacts[sliding.contact] = Mode::Sliding(sliding.slip);
+        }
     }
 }
 
@@ -186,8 +198,7 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
     fn longest(&mut self, state: &State) -> f64 {
         let equation = &self.run.field.workspace.equation;
         let rest_speed = rest_speed(&state.qd, &equation.WQ, self.frame);
-        let slips =
-            equation.friction.longest::<D>(&self.beginning, &equation.rows, &self.run.system.inverse_mass, rest_speed);
+        let slips = self.at_start.longest::<D>(self.run.system, equation, rest_speed);
         slips.max(SLOWEST * self.frame).min(self.run.longest(state))
     }
 
@@ -196,28 +207,28 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
             return Outcome::Failed(error);
         }
         (self.cause, self.stays) = (None, false);
-        if let Some(contact) = self.skipped.take() {
+        if let Some(k) = self.skipped.take() {
             let h = h.min(SKIP * self.frame);
-            self.cause = Some(EventCause::Normal(contact));
+            self.cause = Some(EventCause::Normal(k));
             return self.try_length(state, h).map_or_else(|outcome| outcome, Outcome::Met);
         }
         let whole = match (self.try_length(state, h), self.without_answer()) {
             (Ok(whole), _) => whole,
             (Err(_), Some(cause)) if h < NO_ANSWER * self.frame => return self.stay(state, cause),
-            // Shorter ones may have one.
+            // A λ that is not a number: friction may have an answer in a shorter substep.
             (Err(Outcome::Met(attempt)), Some(_)) if attempt.error.is_nan() => return Outcome::NotMet,
             (Err(Outcome::Failed(StepError::NotSatisfied { residual, .. })), Some(_)) if residual.is_nan() => {
                 return Outcome::NotMet;
             }
             (Err(outcome), _) => return outcome,
         };
-        if self.event_functions.iter().any(|&margin| margin < -1.0) {
+        if self.event_functions.iter().any(|&function| function < -1.0) {
             return match self.locate(state, h) {
                 Ok((h, attempt)) => Outcome::Met(Attempt { h, error: whole.error, ..attempt }),
                 Err(outcome) => outcome,
             };
         }
-        // Half of it, and what it meets there, or an event before.
+        // A contact that closes and opens within the substep: half the substep ends closed, or at an event before that.
         if self.is_missed(h, state.t) {
             return Outcome::NotMet;
         }
@@ -230,25 +241,16 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
             return self.run.field.drift(&self.run.stages.q, &self.run.stages.qd);
         }
         let drift = self.run.keep(state, h);
-        // In their order there is one for each contact that slides.
-        let mut sliding = self.run.field.workspace.equation.friction.sliding.iter_mut();
-        for mode in &mut self.modes.contacts {
-            if let Mode::Sliding(direction) = mode
-                && let Some(now) = sliding.next()
-            {
-                now.began = now.direction;
-                *direction = now.direction;
-            }
-        }
+        self.keep_slips();
         let equation = &self.run.field.workspace.equation;
-        self.beginning.Cd.clone_from(&equation.gaps.Cd);
-        self.beginning.lambda.clone_from(&equation.lambda);
+        self.at_start.Cd.clone_from(&equation.gaps.Cd);
+        self.at_start.lambda.clone_from(&equation.lambda);
         if self.cause.is_some() {
             let outcome = self.resolve(state, state.t + h);
             self.failure = outcome.err();
         } else {
             self.normals.begin::<D>(&self.run.field.workspace.equation.rows);
-            self.at_beginning.clone_from(&self.event_functions);
+            self.event_functions_at_start.clone_from(&self.event_functions);
         }
         state.modes.clone_from(&self.modes);
         drift

@@ -4,19 +4,20 @@ pub(crate) mod euler;
 pub(crate) mod rk4;
 pub(crate) mod symplectic_euler;
 
-use super::{Workspace, check_finite};
+use super::check_finite;
+use super::frame::Frame;
 use crate::drift::{Drift, drift};
 use crate::energy;
 use crate::error::StepError;
 use crate::point::Motion;
 use crate::report::StepReport;
 use crate::state::State;
-use crate::system::System;
 
-/// A constraint off by this many times its own size is beyond recognition: what follows would only be larger numbers.
+/// Residual of a constraint, relative to its own size, above which a step has diverged: what follows would only be
+/// larger numbers.
 const DIVERGED: f64 = 1e3;
 
-/// What a fixed-step method says of the step it wrote to the workspace [J].
+/// The work of a step that its method wrote to the workspace [J].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StepWork {
     pub(crate) dissipation: f64,
@@ -24,45 +25,43 @@ pub(crate) struct StepWork {
     pub(crate) drives: f64,
 }
 
-pub(crate) type FixedStep = fn(&System, &State, f64, &mut Workspace) -> StepWork;
+/// Writes one step of the frame's length to the workspace.
+pub(crate) type FixedStep = fn(&mut Frame<'_>, &State) -> StepWork;
 
-/// One step of a method without substeps: try, check, keep.
+/// One step of a method without substeps.
 pub(crate) fn run<const D: usize>(
-    system: &System,
+    frame: &mut Frame<'_>,
     state: &mut State,
-    h: f64,
-    workspace: &mut Workspace,
     method: FixedStep,
 ) -> Result<StepReport, StepError> {
-    let factorizations = workspace.equation.solver.factorizations;
-    let work = method(system, state, h, workspace);
-    let warnings = workspace.equation.warnings(system);
-    workspace.factored_at.clear();
-    let drift = examine::<D>(system, state.t, h, workspace)?;
-    std::mem::swap(&mut state.q, &mut workspace.q);
-    std::mem::swap(&mut state.qd, &mut workspace.qd);
-    state.t += h;
+    let factorizations = frame.factorizations();
+    let work = method(frame, state);
+    let warnings = frame.workspace.equation.warnings(frame.system);
+    frame.workspace.equation.solver.memory.forget();
+    let drift = examine::<D>(frame, state.t)?;
+    std::mem::swap(&mut state.q, &mut frame.workspace.q);
+    std::mem::swap(&mut state.qd, &mut frame.workspace.qd);
+    state.t += frame.length;
     state.work.dissipation += work.dissipation;
     state.work.stabilization += work.stabilization;
     state.work.drives += work.drives;
     state.carry = None;
-    Ok(StepReport {
-        substeps: 1,
-        factorizations: workspace.equation.solver.factorizations - factorizations,
-        smallest_substep: h,
-        max_residual: drift.residual,
-        max_residual_rate: drift.residual_rate,
-        max_relative_length_error: drift.relative_length,
-        energy: energy::energy(system, state),
+    let mut report = StepReport {
+        factorizations: frame.factorizations() - factorizations,
+        smallest_substep: frame.length,
+        energy: energy::energy(frame.system, state),
         warnings,
         ..StepReport::default()
-    })
+    };
+    report.book(frame.length, 0, &drift);
+    Ok(report)
 }
 
-/// Refuses a tried state that is not finite or has diverged; t is that of the last good state, h the step from there.
-fn examine<const D: usize>(system: &System, t: f64, h: f64, workspace: &mut Workspace) -> Result<Drift, StepError> {
+/// Refuses a tried state that is not finite or has diverged; t is that of the last good state.
+fn examine<const D: usize>(frame: &mut Frame<'_>, t: f64) -> Result<Drift, StepError> {
+    let Frame { system, workspace, length: h, .. } = frame;
     check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
-    workspace.equation.constrain(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + h });
+    workspace.equation.constrain(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + *h });
     let drift = drift::<D>(system, &workspace.equation.rows, &workspace.equation.inactive, &workspace.q);
     if drift.relative > DIVERGED {
         let row = system.row_names[drift.worst_row].clone();

@@ -3,27 +3,29 @@
 //! Stable while h ω < 2.83. λ is exact at every stage, so C drifts only by the method's own error.
 //! Source: Kutta (1901).
 
-use super::{StepWork, Workspace};
+use super::StepWork;
 use crate::integrate::field::{Field, GeneralField, unpack};
+use crate::integrate::frame::Frame;
 use crate::integrate::runge_kutta::{Tableau, advance};
 use crate::state::State;
-use crate::system::System;
 
 pub(crate) static RK4: Tableau =
     Tableau::new(&[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]], &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]);
 
-pub(crate) fn step<const D: usize>(system: &System, state: &State, h: f64, workspace: &mut Workspace) -> StepWork {
-    // What was singular is asked anew, so that it does not matter who looked between two steps.
+pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> StepWork {
+    let (system, h) = (frame.system, frame.length);
+    let workspace = &mut *frame.workspace;
+    // A factor of a singular A is not kept, so that readers of terms between two steps change no bit of the motion.
     let is_regular = !workspace.equation.solver.deficient;
     let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state) && is_regular;
     if !is_factored {
-        workspace.equation.solver.stays_deficient = false;
+        workspace.equation.solver.memory.ask_again();
     }
     let mut stages = std::mem::take(&mut workspace.stages);
     let mut field = GeneralField::<D> { system, workspace, feedback: system.feedback, is_factored };
     stages.resize(field.blocks());
     field.begin(state, &mut stages.q, &mut stages.qd);
-    // The general path always has an answer.
+    // The general field always has an answer.
     let work = advance(&RK4, &mut field, &mut stages, state.t, h).unwrap_or_default();
     unpack(&stages.next_q, &mut workspace.q);
     unpack(&stages.next_qd, &mut workspace.qd);

@@ -1,8 +1,9 @@
-//! What hangs together with what: particles that can move as nodes, rows and springs as edges. Found once for a system.
+//! The graph of a system: particles that can move as nodes, rows and springs as edges. Found once for a system.
 //!
-//! The graph falls into components at the fixed particles. A component without cycles is eliminated from its leaves to its
-//! root, each rod with the particle below it. What is left over there (a second rod beside the first, a cable's other end) and
-//! every row of a component with cycles acts through a penalty, which only adds to blocks that are there anyway.
+//! The graph falls into components at the fixed particles. A component without cycles is eliminated from its leaves
+//! to its root, each rod with the particle below it. Rows that remain there (a second rod beside the first, the other
+//! end of a cable), and every row of a component with cycles, act through a penalty, which only adds to blocks that
+//! exist anyway.
 
 use crate::constraint::Holds;
 use crate::force::Acts;
@@ -10,8 +11,8 @@ use crate::linalg::{BlockLdl, ForestEdge, LeafToRoot, NONE};
 use crate::space::ParticleId;
 use crate::system::System;
 
-/// Where a block stands: the nodes of its row and column, the same on the diagonal, and the edge between them; each may be
-/// [`NONE`].
+/// The slot of a block: the nodes of its row and column, the same on the diagonal, and the edge between them. Each
+/// may be [`NONE`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSlot {
     pub(super) a: usize,
@@ -19,12 +20,13 @@ pub(super) struct BlockSlot {
     pub(super) edge: usize,
 }
 
-/// Where the places of one constraint begin.
+/// Where the entries and edges of one constraint begin.
 #[derive(Clone, Copy, Debug)]
 struct Own {
     /// Among the entries of J: that of its first particle in its first row.
     entry: usize,
-    /// Among the edges between two of its particles i < j: that of 0 and 1, the others following in the order 02, 12, 03, ….
+    /// Among the edges between two of its particles i < j: that of 0 and 1, the others following in the order 02, 12,
+    /// 03, ….
     edge: usize,
 }
 
@@ -41,11 +43,11 @@ pub(super) struct Graph {
     sorted: Vec<(usize, usize)>,
     /// (first, second): the block of the edge is H_first,second.
     pub(super) edges: Vec<(usize, usize)>,
-    /// Rows that touch no node.
+    /// For each row whether it lies on no node.
     pub(super) idle: Vec<bool>,
     /// Rows that act through a penalty.
     pub(super) penalties: Vec<usize>,
-    /// Where each constraint stands.
+    /// The entries and edges of each constraint.
     constraints: Vec<Own>,
     own_edges: Vec<usize>,
     pub(super) forest: LeafToRoot,
@@ -106,7 +108,7 @@ impl Graph {
         self.node[id.0]
     }
 
-    /// Where the block of two particles stands, or of one with itself.
+    /// The slot of the block of two particles, or of one with itself.
     pub(super) fn place(&self, a: ParticleId, b: ParticleId) -> BlockSlot {
         let (a, b) = (self.node(a), self.node(b));
         BlockSlot { a, b, edge: self.find(a, b) }
@@ -138,7 +140,7 @@ impl Graph {
             neighbours[a].push((b, edge));
             neighbours[b].push((a, edge));
         }
-        // For each edge and each node the first row that belongs to it alone.
+        // For each edge and each node, the first row that lies on it alone.
         let mut row_of_edge = vec![NONE; self.edges.len()];
         let mut row_of_node = vec![NONE; count];
         let pulling = system.constraints.iter().flat_map(|named| {
@@ -149,7 +151,7 @@ impl Graph {
         for row in (0..system.row_count()).rev() {
             match self.touched(system, row)[..] {
                 [entry] => row_of_node[self.entry_node[entry]] = row,
-                // Where nothing pulls on the child, the row would be lost with it.
+                // A row without a gradient at the child would be lost with it.
                 [a, b] if pulls_on_each[row] => {
                     let edge = self.find(self.entry_node[a], self.entry_node[b]);
                     if edge != NONE {
@@ -162,7 +164,7 @@ impl Graph {
         let mut eliminated_with = vec![false; system.row_count()];
         let mut visited = vec![false; count];
         let (mut links, mut in_cycles) = (Vec::new(), Vec::new());
-        // A root that hangs on something fixed first: its row then needs no penalty.
+        // Roots with a row to a fixed particle come first: that row then needs no penalty.
         let anchored = (0..count).filter(|&node| row_of_node[node] != NONE);
         let roots: Vec<usize> = anchored.chain(0..count).collect();
         for root in roots {

@@ -1,6 +1,6 @@
-//! The matrix of a Newton iteration against a dense one made by differences, for trees, nets and what lies between.
+//! The matrix of a Newton iteration against a dense one made by differences, for trees, nets and mixtures of both.
 
-use super::matrix::Matrix;
+use super::matrix::{Linearization, Matrix};
 use crate::force::Acts;
 use crate::linalg::block::{Block, transposed};
 use crate::point::Motion;
@@ -76,7 +76,7 @@ fn solve_dense(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 }
 
 /// h_e² Q + Jᵀ μ at q, with q̇ = q/h_e.
-fn pull(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
+fn forces(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
     let motion = Motion::<D> { q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
@@ -90,7 +90,7 @@ fn pull(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// What `Matrix` solves is what the dense matrix with differences for K solves.
+/// `Matrix` and the dense matrix with differences for K have the same solution.
 fn check(what: &str, system: &System, q: &[f64]) {
     let (n, m) = (q.len(), system.row_count());
     // In tension, the more the farther down the list: K is positive then, and nothing needs mending.
@@ -106,7 +106,11 @@ fn check(what: &str, system: &System, q: &[f64]) {
         // Central differences: third derivatives of order one leave 1e-10, roundoff 1e-11.
         const STEP: f64 = 1e-5;
         let moved = |by: f64| {
-            pull(system, &mu, &q.iter().enumerate().map(|(k, x)| if k == j { x + by } else { *x }).collect::<Vec<_>>())
+            forces(
+                system,
+                &mu,
+                &q.iter().enumerate().map(|(k, x)| if k == j { x + by } else { *x }).collect::<Vec<_>>(),
+            )
         };
         let (ahead, behind) = (moved(STEP), moved(-STEP));
         for i in 0..n {
@@ -121,7 +125,7 @@ fn check(what: &str, system: &System, q: &[f64]) {
         let soft = &system.softness[row];
         dense[n + row][n + row] = -soft.compliance / (H_E * H_E * soft.lag(H_E));
     }
-    // What is held does not move.
+    // Fixed particles do not move.
     for i in (0..n).filter(|i| system.inverse_mass[i / D] == 0.0) {
         for j in 0..n + m {
             (dense[i][j], dense[j][i]) = (0.0, 0.0);
@@ -134,7 +138,7 @@ fn check(what: &str, system: &System, q: &[f64]) {
     let expected = solve_dense(dense, b.clone());
 
     let mut matrix = Matrix::new(system);
-    assert!(matrix.factor(system, &rows, motion, &mu, H_E), "{what}");
+    assert!(matrix.factor(&Linearization { system, rows: &rows, motion, mu: &mu, h_e: H_E }), "{what}");
     let mut r: Vec<f64> = matrix.graph.particle.iter().flat_map(|id| b[id.0 * D..][..D].to_vec()).collect();
     let mut s = b[n..].to_vec();
     matrix.solve::<D>(system, &mut r, &mut s);
@@ -207,12 +211,12 @@ fn a_compressed_chain_is_mended() {
     system.evaluate_rows(motion, &mut rows);
     let mu = vec![5.0; system.row_count()];
     let mut matrix = Matrix::new(&system);
-    assert!(matrix.factor(&system, &rows, motion, &mu, H_E));
+    assert!(matrix.factor(&Linearization { system: &system, rows: &rows, motion, mu: &mu, h_e: H_E }));
     let (mut r, mut s) = (vec![1.0; matrix.graph.particle.len() * D], vec![0.0; system.row_count()]);
-    let push = r.clone();
+    let force = r.clone();
     matrix.solve::<D>(&system, &mut r, &mut s);
-    // A positive definite matrix leads along the push, not against it.
-    let along: f64 = r.iter().zip(&push).map(|(x, f)| x * f).sum();
+    // A positive definite matrix leads along the force, not against it.
+    let along: f64 = r.iter().zip(&force).map(|(x, f)| x * f).sum();
     assert!(along.is_finite() && along > 0.0, "{along}");
 }
 
@@ -242,7 +246,7 @@ fn a_difference_is_three_blocks() {
             assert_eq!(three, difference, "{a}, {b}");
             assert_eq!(add(&[(a, b, piece(any))], true), add(&[(b, a, piece(transposed(&any)))], true), "{a}, {b}");
         }
-        // Where only what is known to be positive counts, a negative trace tells, and an unknown sign is left out.
+        // Without `signed`, blocks with a negative trace and blocks of unknown sign are left out.
         let nothing = add(&[], false);
         assert_eq!(add(&[(a, b, Stiffness::Difference(symmetric))], false), nothing);
         assert_eq!(add(&[(b, b, Stiffness::Indefinite(minus))], false), nothing);

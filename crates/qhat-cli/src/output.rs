@@ -1,0 +1,92 @@
+//! Where a file goes: never over one that exists unless told so, and never half of it.
+
+use crate::failure::Failure;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// The file asked for, and whether it may be replaced.
+#[derive(Debug)]
+pub(crate) struct Output {
+    path: PathBuf,
+    force: bool,
+}
+
+impl Output {
+    /// Checks name and place before anything is computed, and those of the files that come with it.
+    pub(crate) fn new(path: &Path, companions: &[PathBuf], force: bool) -> Result<Self, Failure> {
+        let output = Output { path: path.to_owned(), force };
+        if !output.folder().is_dir() {
+            return Err(Failure::input(format!("there is no folder `{}` to write in", output.folder().display())));
+        }
+        for path in companions.iter().map(PathBuf::as_path).chain([path]) {
+            if path.is_dir() {
+                return Err(Failure::input(format!("`{}` is a folder", path.display())));
+            }
+            if !force && path.symlink_metadata().is_ok() {
+                return Err(exists(path));
+            }
+        }
+        Ok(output)
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// A file without a name on the disk of the output, gone when it is closed.
+    pub(crate) fn scratch(&self) -> Result<File, Failure> {
+        tempfile::tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
+    }
+
+    /// A file beside the output that [`Output::put`] can rename; removed if that never happens.
+    pub(crate) fn temporary(&self) -> Result<NamedTempFile, Failure> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".qhat-").suffix(".part");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // As any new file of the user, less the umask; without this it would be for the user's eyes only.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        builder.tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
+    }
+
+    /// Renames a finished file to the output.
+    pub(crate) fn put(&self, file: NamedTempFile) -> Result<(), Failure> {
+        self.put_as(file, &self.path)
+    }
+
+    /// Renames a finished file to one that comes with the output.
+    pub(crate) fn put_as(&self, file: NamedTempFile, path: &Path) -> Result<(), Failure> {
+        let outcome = if self.force { file.persist(path) } else { file.persist_noclobber(path) };
+        match outcome {
+            Ok(_) => Ok(()),
+            // Made by someone else while this ran.
+            Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => Err(exists(path)),
+            Err(failed) => Err(self.cannot_write(&failed.error)),
+        }
+    }
+
+    /// What to say when writing fails.
+    pub(crate) fn cannot_write(&self, error: &io::Error) -> Failure {
+        Failure::io(format!("cannot write `{}`", self.path.display()), error)
+    }
+
+    fn folder(&self) -> &Path {
+        match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        }
+    }
+}
+
+/// The ending of a file name, in small letters.
+pub(crate) fn ending(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+}
+
+fn exists(path: &Path) -> Failure {
+    Failure::input(format!("`{}` exists; nothing was written. Use --force to write over it", path.display()))
+}

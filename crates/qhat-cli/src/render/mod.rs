@@ -1,0 +1,58 @@
+//! `qhat render`: from a scene, a time of its run or a frame of a trajectory to a picture.
+
+mod still;
+
+use crate::arguments;
+use crate::failure::{Failure, warn};
+use crate::output::{Output, ending};
+use crate::source::Source;
+use qhat_shapes::{Options, png, svg};
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use still::Still;
+
+/// What the ending of a file name asks for.
+#[derive(Clone, Copy, Debug)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, Failure> {
+        match ending(path).as_deref() {
+            Some("svg") => Ok(Format::Svg),
+            Some("png") => Ok(Format::Png),
+            _ => Err(Failure::input(format!(
+                "cannot tell from its ending how to draw `{}`; end the name in .svg or .png",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Draws a picture as the arguments say. A picture of a run that ended early shows the last state, and says so.
+pub(crate) fn render(arguments: &arguments::Render) -> Result<ExitCode, Failure> {
+    let format = Format::of(&arguments.output)?;
+    let output = Output::new(&arguments.output, &[], arguments.force)?;
+    let source = Source::read(&arguments.scene)?;
+    let scene = source.load().map_err(Failure::formatted)?;
+    let still = match &arguments.from {
+        Some(path) => Still::stored(&scene, &source, path, arguments.frame)?,
+        None => Still::simulated(&scene, arguments.at.unwrap_or(0.0), arguments.quiet)?,
+    };
+    let options = Options { size: arguments.size, dark: arguments.dark };
+    let picture = still.picture(&scene.name);
+    let bytes = match format {
+        Format::Svg => svg(&picture, &options).into_bytes(),
+        Format::Png => png(&picture, &options).map_err(Failure::input)?,
+    };
+    let mut file = output.temporary()?;
+    file.write_all(&bytes).map_err(|error| output.cannot_write(&error))?;
+    output.put(file)?;
+    if let Some(message) = &still.message {
+        warn(format!("{}: {message}", still.status));
+    }
+    Ok(still.status.exit_code())
+}

@@ -1,0 +1,11 @@
+//! Tests of the command from outside, in one binary. Each runs the command as a process of its own, in a folder of its
+//! own.
+
+mod bench;
+mod check;
+mod common;
+mod events;
+mod play;
+mod refuse;
+mod run;
+mod words;

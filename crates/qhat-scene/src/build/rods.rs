@@ -1,0 +1,97 @@
+//! `[[constraints]]` that hold distances: rods and rigid clusters.
+
+use super::Assembly;
+use crate::model::rods::{Distance, DistanceForm, Rigid};
+use crate::model::{Driven, Id, Named};
+use crate::tree::Node;
+use qhat::{ParticleId, rigid_rods};
+
+impl Assembly<'_, '_, '_> {
+    pub(super) fn add_distance(&mut self, it: &Distance, place: &Node) -> Option<()> {
+        let ends = self.pair(&it.between, place.key("between"))?;
+        let length = match &it.length {
+            Some(driven) => match self.schedule(driven, place.key("length"))? {
+                qhat::Driven::Constant(length) => length,
+                radius => return self.add_driven_rod(it, radius, ends, place),
+            },
+            None => self.measured_length("rod", &it.between, ends, place)?,
+        };
+        let name = self.name_of(it);
+        let rod = qhat::Distance::new(ends.0, ends.1, length).with_compliance(it.compliance, it.damping);
+        if it.breaks_at.is_some() || matches!(it.length, Some(Driven::Text(_))) {
+            self.places.insert(name.clone(), place.span.clone());
+        }
+        let Distance { form, breaks_at, .. } = *it;
+        self.builder.constraint(name, qhat::Distance { form: form.into(), breaks_at, ..rod });
+        Some(())
+    }
+
+    /// The distance at the start [m], for a rod or rope whose length is left out.
+    pub(super) fn measured_length(
+        &mut self,
+        what: &str,
+        between: &[Id; 2],
+        (a, b): (ParticleId, ParticleId),
+        place: &Node,
+    ) -> Option<f64> {
+        let length = self.distance(a, b);
+        let [one, other] = between.each_ref().map(|Id(id)| self.report.quoted(id));
+        let complaint = if length == 0.0 {
+            format!("a {what} needs a length, but {one} and {other} start at the same place")
+        } else if !length.is_finite() {
+            format!("{one} and {other} start too far apart to measure the length of a {what}")
+        } else {
+            return Some(length);
+        };
+        let help = "move one of them, or give `length` [m]".to_owned();
+        self.report.error(place.key("between").span.clone(), complaint, Some(help));
+        None
+    }
+
+    /// A rod whose length is an expression of t.
+    fn add_driven_rod(
+        &mut self,
+        it: &Distance,
+        radius: qhat::Driven,
+        (a, b): (ParticleId, ParticleId),
+        place: &Node,
+    ) -> Option<()> {
+        if it.compliance > 0.0 || it.form != DistanceForm::Length {
+            let message = "a rod whose length is an expression is rigid and held in the form `length`";
+            let help = "leave out `form`, `compliance` and `damping`, or give `length` as a number".to_owned();
+            self.report.error(place.key("length").span.clone(), message, Some(help));
+            return None;
+        }
+        if it.breaks_at.is_some() {
+            let message = "a rod whose length is an expression does not break";
+            let help = "leave out `breaks_at`, or give `length` as a number".to_owned();
+            self.report.error(place.key("breaks_at").span.clone(), message, Some(help));
+            return None;
+        }
+        self.add_named(it, qhat::OnSphere::new(a, b, radius));
+        Some(())
+    }
+
+    pub(super) fn add_rigid(&mut self, it: &Rigid, place: &Node) -> Option<()> {
+        let list = place.key("particles");
+        let particles = self.particles(&it.particles, list)?;
+        let points: Vec<[f64; 3]> = particles.iter().map(|id| self.start(*id)).collect();
+        match rigid_rods(self.dimension_of_system(), &points) {
+            Ok(rods) => {
+                for ends in rods {
+                    let [a, b] = ends.map(|end| &it.particles[end].0);
+                    let name = self.free_name(format!("{a}-{b}"));
+                    let [a, b] = ends.map(|end| particles[end]);
+                    let rod = qhat::Distance::new(a, b, self.distance(a, b));
+                    self.builder.constraint(name, rod);
+                }
+                Some(())
+            }
+            Err(reason) => {
+                let message = format!("constraint `{}`: this cluster cannot be held: {reason}", it.default_name());
+                self.report.error(list.span.clone(), message, None);
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The names of the integrators in scenes and commands: those of the engine, and synonyms.
+
+use qhat::Integrator;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::borrow::Cow;
+
+/// Names beside those of the engine. `implicit` is the backward Euler method, which many readers know by that name.
+const SYNONYMS: [(&str, Integrator); 1] = [("backward-euler", Integrator::Implicit)];
+
+/// Every name by which a scene or a command may choose an integrator, with the integrator.
+pub fn integrator_names() -> impl Iterator<Item = (&'static str, Integrator)> {
+    Integrator::ALL.into_iter().map(|integrator| (integrator.name(), integrator)).chain(SYNONYMS)
+}
+
+/// An integrator, in a scene its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Method(pub(crate) Integrator);
+
+impl JsonSchema for Method {
+    fn schema_name() -> Cow<'static, str> {
+        "Integrator".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "The integrator.",
+            "type": "string",
+            "enum": integrator_names().map(|(name, _)| name).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.0.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Method {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let given = String::deserialize(deserializer)?;
+        let found = integrator_names().find(|(name, _)| *name == given);
+        found.map(|(_, integrator)| Method(integrator)).ok_or_else(|| de::Error::custom("unknown integrator"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{from_value, json, to_value};
+
+    /// The first name of an integrator is the engine's own, so that reports and files use one name.
+    #[test]
+    fn every_name_chooses_its_integrator() {
+        for (name, integrator) in integrator_names() {
+            assert_eq!(from_value::<Method>(json!(name)).unwrap(), Method(integrator));
+            assert_eq!(to_value(Method(integrator)).unwrap(), json!(integrator.name()));
+        }
+        assert_eq!(from_value::<Method>(json!("backward-euler")).unwrap(), Method(Integrator::Implicit));
+        assert!(from_value::<Method>(json!("forward-euler")).is_err());
+    }
+
+    #[test]
+    fn no_name_has_two_meanings() {
+        let mut names: Vec<&str> = integrator_names().map(|(name, _)| name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), integrator_names().count());
+    }
+}

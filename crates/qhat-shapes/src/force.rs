@@ -1,0 +1,63 @@
+//! The shapes of forces. The match over the kinds has no wildcard: a new kind does not compile before it is named.
+
+use crate::list::Shapes;
+use crate::shape::{Shape, ShapeKind, Source};
+use qhat::{Facet, Force, ParticleId};
+
+/// Adds the shapes of all forces; closed loops that pressure fills come last.
+pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
+    let mut outlines = Vec::new();
+    for (i, force) in forces.iter().enumerate() {
+        shapes.of = Source::Force(i);
+        match force {
+            Force::Spring(spring) => add_spring([spring.a, spring.b], spring.rest, shapes),
+            Force::CubicSpring(spring) => add_spring([spring.a, spring.b], spring.rest, shapes),
+            Force::Actuator(actuator) => {
+                shapes.push(Shape::new(ShapeKind::Actuator, shapes.of, [actuator.a, actuator.b]));
+            }
+            Force::Pressure(pressure) => add_facet(&pressure.facet, &mut outlines, shapes),
+            Force::Gas(gas) => gas.facets().iter().for_each(|facet| add_facet(facet, &mut outlines, shapes)),
+            // Forces on one particle, on all of them, and from afar have no picture.
+            Force::Gravity(_)
+            | Force::Drag(_)
+            | Force::PointForce(_)
+            | Force::MouseSpring(_)
+            | Force::ExpressionForce(_)
+            | Force::ExpressionPotential(_)
+            | Force::CustomForce(_)
+            | Force::CentralForce(_)
+            | Force::InverseSquare(_)
+            | Force::AirDrag(_)
+            | Force::HarmonicForce(_)
+            // The arms of a torsion spring are drawn by what holds them.
+            | Force::TorsionSpring(_) => (),
+            // The kinds of a later engine have no picture until they are named here.
+            _ => (),
+        }
+    }
+    for Outline { of, corners } in outlines {
+        shapes.push(Shape::new(ShapeKind::Area, of, corners));
+    }
+}
+
+fn add_spring(ends: [ParticleId; 2], rest: f64, shapes: &mut Shapes<'_>) {
+    shapes.push(Shape::new(ShapeKind::Spring, shapes.of, ends).sized(rest));
+}
+
+/// A loop of edges under pressure.
+struct Outline {
+    /// The force on its first edge.
+    of: Source,
+    corners: Vec<ParticleId>,
+}
+
+/// Adds a triangle at once, and an edge to the outline that it goes on: edges of one loop follow each other.
+fn add_facet(facet: &Facet, outlines: &mut Vec<Outline>, shapes: &mut Shapes<'_>) {
+    match *facet {
+        Facet::Edge([a, b]) => match outlines.last_mut() {
+            Some(outline) if outline.corners.last() == Some(&a) => outline.corners.push(b),
+            _ => outlines.push(Outline { of: shapes.of, corners: vec![a, b] }),
+        },
+        Facet::Triangle(corners) => shapes.push(Shape::new(ShapeKind::Area, shapes.of, corners)),
+    }
+}

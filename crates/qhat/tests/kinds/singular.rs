@@ -1,0 +1,35 @@
+//! Every kind where it has no gradient.
+
+use super::case::P;
+use crate::systems::random::dimension;
+use qhat::{Angle, Area, Constraint, Distance, Gears, Lengths, Particle, Settings, Simulation, System, Volume};
+
+/// Where there is no gradient a step says so, or carries on: no panic, and no number that is not one.
+#[test]
+fn singular_places_end_in_an_error_or_in_numbers() {
+    let start = |d: usize, constraint: Constraint| {
+        let mut builder = System::builder(dimension(d));
+        for i in 0..6 {
+            let x = [if i < 2 { 0.0 } else { i as f64 }, 0.0, 0.0];
+            builder.particle(Particle::at(format!("p{i}"), &x[..d]).with_velocity(vec![0.1; d]));
+        }
+        builder.with_constraint("anchor", Distance::new(P[4], P[5], 1.0)).constraint("it", constraint);
+        let (system, state) = builder.build().unwrap();
+        let outcome = Simulation::new(system, state, Settings::default()).and_then(|mut simulation| {
+            simulation.step()?;
+            Ok(simulation.state().positions().to_vec())
+        });
+        match outcome {
+            Ok(positions) => assert!(positions.iter().all(|x| x.is_finite())),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    };
+    start(2, Lengths::pulley(&P[..3], 2.0).into());
+    start(2, Lengths::ratio([P[0], P[1]], [P[2], P[3]], 1.0).into());
+    start(2, Angle::between([P[0], P[1]], [P[2], P[3]], 1.0).into());
+    start(2, Angle::from_direction([1.0, 0.0, 0.0], [P[2], P[3]], std::f64::consts::PI).into());
+    start(3, Angle::between([P[2], P[3]], [P[3], P[4]], 1.0).into());
+    start(2, Gears::mesh([[P[0], P[1]], [P[2], P[3]]], [2, 3], 1.0).into());
+    start(2, Area { corners: P[..4].to_vec(), area: 1.0.into() }.into());
+    start(3, Volume::tetrahedron([P[0], P[1], P[2], P[3]], 1.0).into());
+}

@@ -1,0 +1,49 @@
+//! All tests of the engine from outside, in one binary: some thirty binaries linked one by one took most of the time of
+//! a test run. `cargo test --package qhat --test all kinds::` runs one file.
+//!
+//! No test here changes the environment, the working directory or rayon's global pool, so none needs a process of its
+//! own. Names that begin with `long_` simulate for seconds of real time; `make check` leaves them to `make test`.
+
+#![allow(non_snake_case, reason = "the letters of the equations keep their case")]
+
+mod api;
+mod auto;
+mod chains_against_general;
+mod columns;
+mod contacts;
+mod contacts_random;
+mod contacts_singular;
+mod custom;
+mod degenerate;
+mod docs;
+mod equivalence;
+mod examples;
+mod expression;
+mod expression_derivatives;
+mod forces;
+mod glossary;
+mod identities;
+mod kinds;
+mod layers;
+mod limits;
+mod method_example;
+mod one_step_by_hand;
+mod order;
+mod reactions;
+mod refused;
+mod serde;
+mod snapshot;
+mod softness;
+mod step_size;
+mod systems;
+mod tension;
+mod threads;
+mod verify_body;
+mod verify_chain;
+mod verify_energy;
+mod verify_expression;
+mod verify_forces;
+mod verify_gears;
+mod verify_implicit;
+mod verify_pendulum;
+mod verify_spring;

@@ -1,0 +1,159 @@
+// The numbers and words that the panels show about the running scene, refreshed at a pace at which they can be read.
+
+import { type Controls, EngineError, type StepEvent, type StepReport, type Terms } from '../engine';
+import type { Selection } from '../view/picture';
+import type { Comparison } from './comparison.svelte';
+import { withEvents } from './events';
+import type { Hand } from './hand';
+import { History } from './history';
+import { format } from './numbers';
+import type { Playback } from './playback.svelte';
+import type { Session } from './session.svelte';
+
+/** Time between two refreshes of the panels, ms: ten a second are as many as a person can read. */
+const PANEL_INTERVAL_MS = 100;
+
+/** Time that the words of a warning stay after the last step that raised it, ms: one step alone would flash by. */
+const WARNING_STAYS_MS = 3000;
+
+/** Traces of the history, in this order. */
+export const TRACES = ['time', 'kinetic', 'potential', 'total', 'missing', 'residual', 'ghost'] as const;
+
+export class Readings {
+  /** s */
+  time = $state(0);
+  /** simulated time reached, as a part of the time asked for */
+  ratio = $state(1);
+  /** true where the machine cannot hold the speed */
+  late = $state(false);
+  warnings = $state.raw<string[]>([]);
+  /** integrator that `auto` chose for the last step; null before the first step or under any other integrator */
+  chosen = $state.raw<Controls['integrator'] | null>(null);
+  /** why `auto` went over to bdf2, in the engine's words; null where it did not */
+  tooStiff = $state.raw<string | null>(null);
+  /** how the last step was solved; null before the first step */
+  solver = $state.raw<StepReport['solver'] | null>(null);
+  /** the last events, newest first */
+  events = $state.raw<readonly StepEvent[]>([]);
+  /** max |C| of the run and of the ghost */
+  residual = $state(0);
+  ghostResidual = $state(0);
+  /** the particle or link that a person clicked */
+  selection = $state.raw<Selection>(null);
+  /** every symbol of the state shown; null while no panel needs it */
+  terms = $state.raw<Terms | null>(null);
+  termsOpen = $state(false);
+  /** counts the refreshes */
+  tick = $state(0);
+  readonly history = new History(TRACES.length);
+  private lastRefreshMs = 0;
+  private warnedMs = -Infinity;
+  /** the last events, ahead of those shown until the next refresh */
+  private lastEvents: readonly StepEvent[] = [];
+
+  constructor(
+    private readonly session: Session,
+    private readonly comparison: Comparison,
+    private readonly playback: Playback,
+    private readonly hand: Hand,
+  ) {
+    session.closing.listen(() => {
+      this.selection = null;
+    });
+    session.controlsSettled.listen(() => this.refresh());
+    playback.restarted.listen(() => this.begin());
+    playback.stepped.listen((report) => this.take(report));
+    playback.moved.listen(() => this.record());
+    playback.halted.listen(() => this.refresh());
+  }
+
+  select(selection: Selection): void {
+    this.selection = selection;
+    this.refresh();
+  }
+
+  setTermsOpen(open: boolean): void {
+    this.termsOpen = open;
+    this.refresh();
+  }
+
+  /** Refreshes the panels of a scene that moves, at their own pace. */
+  frame(timeMs: number): void {
+    if (timeMs - this.lastRefreshMs < PANEL_INTERVAL_MS || !(this.playback.running || this.hand.held)) return;
+    this.lastRefreshMs = timeMs;
+    this.refresh();
+  }
+
+  private begin(): void {
+    this.warnings = this.startWarnings();
+    this.warnedMs = performance.now();
+    this.lastEvents = [];
+    this.history.clear();
+    this.record();
+    this.refresh();
+  }
+
+  private take({ warnings, events }: StepReport): void {
+    this.lastEvents = withEvents(this.lastEvents, events);
+    if (warnings.length === 0) return;
+    this.warnings = warnings;
+    this.warnedMs = performance.now();
+  }
+
+  private record(): void {
+    const run = this.session.run!;
+    const { ghost } = this.comparison;
+    const energy = run.energy();
+    this.history.push([
+      run.simulation.time,
+      energy.kinetic,
+      energy.potential,
+      energy.total,
+      energy.missing,
+      run.report?.max_residual ?? Number.NaN,
+      (ghost && !ghost.stopped ? ghost.report?.max_residual : undefined) ?? Number.NaN,
+    ]);
+  }
+
+  private refresh(): void {
+    const { run, controls } = this.session;
+    if (!run) return;
+    const { report, simulation } = run;
+    const { clock, running } = this.playback;
+    this.time = simulation.time;
+    this.ratio = clock.ratio;
+    this.late = running && clock.late;
+    const choice = controls?.integrator === 'auto' ? report : null;
+    this.chosen = choice?.integrator ?? null;
+    this.tooStiff = choice?.too_stiff ?? null;
+    this.solver = report?.solver ?? null;
+    this.events = this.lastEvents;
+    this.residual = report?.max_residual ?? 0;
+    this.ghostResidual = this.comparison.ghost?.report?.max_residual ?? 0;
+    const wanted = this.termsOpen || this.selection !== null || !running;
+    this.terms = wanted ? this.readTerms() : null;
+    // a state at rest has warnings of its own, whatever the step before it raised
+    if (!running && this.terms) this.warnings = [...this.startWarnings(), ...this.terms.warnings];
+    else if (performance.now() - this.warnedMs > WARNING_STAYS_MS) this.warnings = [];
+    this.tick += 1;
+  }
+
+  /** Says by how much a start that violated its constraints was moved: the author of the scene wants to know. */
+  private startWarnings(): string[] {
+    const simulation = this.session.run?.simulation;
+    const projection = simulation?.projection();
+    if (!simulation || !projection || simulation.time > 0) return [];
+    if (projection.moved === 0 && projection.velocity_changed === 0) return [];
+    const moved = `${format(projection.moved)} m and ${format(projection.velocity_changed)} m/s`;
+    return [`The start did not satisfy the constraints; it was moved onto them, by at most ${moved}.`];
+  }
+
+  private readTerms(): Terms | null {
+    try {
+      return this.session.run!.simulation.terms();
+    } catch (error) {
+      if (error instanceof EngineError) return null;
+      throw error;
+    }
+  }
+}
