@@ -176,7 +176,7 @@ pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
 pub use point::Vector;
-pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
+pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

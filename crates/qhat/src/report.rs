@@ -3,6 +3,7 @@
 use crate::drift::Drift;
 use crate::energy::Energy;
 use crate::settings::Integrator;
+use crate::space::ConstraintId;
 use std::fmt;
 
 /// One frame or step in numbers. Maxima are over its substeps.
@@ -26,6 +27,9 @@ pub struct StepReport {
     pub max_residual_rate: f64,
     /// max ||d| − r|/r over the rigid rods.
     pub max_relative_length_error: f64,
+    /// The largest tension or thrust of any link at the end of any substep; recorded where
+    /// [`Simulation::record_tension`](crate::Simulation::record_tension) asks for it.
+    pub max_tension: Option<MaxTension>,
     /// Energies at the end.
     pub energy: Energy,
     /// Who carried the state; with auto, whom it chose.
@@ -73,6 +77,30 @@ pub enum EventKind {
     Broke,
 }
 
+/// The largest tension or thrust of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MaxTension {
+    /// The tension [N], negative if it is a thrust.
+    pub tension: f64,
+    /// The rod, rope or strut.
+    pub link: ConstraintId,
+    /// t [s].
+    pub time: f64,
+}
+
+impl MaxTension {
+    /// The larger of two in size, the former if they are equal.
+    pub(crate) fn larger(former: Option<Self>, next: Option<Self>) -> Option<Self> {
+        match (former, next) {
+            (Some(former), Some(next)) if next.tension.abs() > former.tension.abs() => Some(next),
+            (Some(former), _) => Some(former),
+            (None, next) => next,
+        }
+    }
+}
+
 impl EventKind {
     /// The word for it: `impact`, `closed`, `opened`, `slipped`, `stuck` or `broke`.
     pub fn name(self) -> &'static str {
@@ -118,6 +146,7 @@ impl StepReport {
         self.max_residual = self.max_residual.max(next.max_residual);
         self.max_residual_rate = self.max_residual_rate.max(next.max_residual_rate);
         self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
+        self.max_tension = MaxTension::larger(self.max_tension, next.max_tension);
         self.energy = next.energy;
         (self.integrator, self.solver) = (next.integrator, next.solver);
         self.events.extend(next.events);

@@ -1,6 +1,7 @@
 //! Workspace: the arrays that steps write in, and the equation at a state.
 
 use super::runge_kutta::Stages;
+use super::watch::TensionWatch;
 use super::{implicit, rattle};
 use crate::chains::Chains;
 use crate::multiplier::{Equation, SolveFor};
@@ -24,6 +25,9 @@ pub struct Workspace {
     pub(super) chains: Option<Chains>,
     pub(super) rattle: rattle::Scratch,
     pub(super) implicit: Option<Box<implicit::Scratch>>,
+    /// Whether the largest tension of every frame is recorded, and the record of the frame at hand.
+    pub(super) is_watched: bool,
+    pub(super) watch: Option<TensionWatch>,
 }
 
 impl Workspace {
@@ -39,6 +43,8 @@ impl Workspace {
             chains: None,
             rattle: rattle::Scratch::new(system),
             implicit: None,
+            is_watched: false,
+            watch: None,
         }
     }
 

@@ -5,7 +5,7 @@ use crate::constraint::Formulation;
 use crate::energy;
 use crate::error::StepError;
 use crate::force::{Acts, Drag, Force, ForceError, Gravity};
-use crate::integrate::{Workspace, check_switches, project};
+use crate::integrate::{check_switches, project};
 use crate::point::{Motion, Vector};
 use crate::settings::{Feedback, Settings, SettingsError};
 use crate::space::{ForceId, in_dimension};
@@ -54,7 +54,7 @@ impl Simulation {
     }
 
     fn set_system(&mut self, system: System) -> Result<(), StepError> {
-        let mut workspace = Workspace::new(&system);
+        let mut workspace = self.workspace.renewed(&system);
         let mut state = State { carry: None, ..self.state.clone() };
         if self.settings.integrator.projects() {
             project(&system, &mut state, &self.settings, &mut workspace)?;
@@ -80,7 +80,7 @@ impl Simulation {
         self.change_forces(|forces| forces[id.0] = force);
         if !is_between_the_same {
             // Arrays of implicit methods know the pairs that forces couple.
-            self.workspace = Workspace::new(&self.system);
+            self.workspace = self.workspace.renewed(&self.system);
         }
         Ok(())
     }

@@ -77,6 +77,15 @@ impl Simulation {
         self.system.links().zip(tension)
     }
 
+    /// Records the largest tension or thrust of every frame from now on, or stops to. [`StepReport::max_tension`] then
+    /// has it, over the ends of all substeps of the frame that were kept; jerks of ropes and impacts are impulses, not
+    /// tensions, and do not count. It costs one more solution of the equation a substep, and changes no bit of the motion.
+    ///
+    /// [`StepReport::max_tension`]: crate::StepReport::max_tension
+    pub fn record_tension(&mut self, is_recorded: bool) {
+        self.workspace.watch_tension(&self.system, is_recorded);
+    }
+
     /// The signed tension of one constraint [N], positive where it pulls its ends together; `None` if its kind is no link.
     ///
     /// # Panics
