@@ -46,7 +46,7 @@ fn projection() -> Kernel {
     let (system, state) = net.system();
     let coordinates = net.positions.len();
     let moved = net.positions.iter().enumerate().map(|(i, x)| x + 1e-4 * (i as f64 * 0.7).sin()).collect();
-    let mut state = state.at(moved, vec![0.0; coordinates]);
+    let mut state = state.with_motion(moved, vec![0.0; coordinates]);
     let mut workspace = Workspace::new(&system);
     Box::new(move || {
         let found = project(&system, &mut state, &Settings::default(), &mut workspace);

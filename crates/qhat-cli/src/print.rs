@@ -60,6 +60,7 @@ pub(crate) fn path(solver: Solver) -> &'static str {
         Solver::Rows => "by the rows of A",
         Solver::Chains => "in lanes",
         Solver::EndOfStep => "at the end of each step",
+        _ => "by another path",
     }
 }
 

@@ -38,14 +38,14 @@ impl Source<'_> {
                 match &named.constraint {
                     Constraint::Nail(nail) => {
                         assert_eq!(nail.form, NailForm::Scalar, "the source's nail");
-                        let i = 2 * nail.particle.0 + k;
+                        let i = 2 * nail.particle.index() + k;
                         C += (q[i] - nail.at[k]) * (q[i] - nail.at[k]);
                         J[i] = 2.0 * (q[i] - nail.at[k]);
                         Jd[i] = 2.0 * qd[i];
                     }
                     Constraint::Distance(rod) => {
                         assert_eq!(rod.form, DistanceForm::Squared, "the source's distance");
-                        let (a, b) = (2 * rod.a.0 + k, 2 * rod.b.0 + k);
+                        let (a, b) = (2 * rod.a.index() + k, 2 * rod.b.index() + k);
                         C += (q[a] - q[b]) * (q[a] - q[b]);
                         (J[a], J[b]) = (2.0 * (q[a] - q[b]), -2.0 * (q[a] - q[b]));
                         (Jd[a], Jd[b]) = (2.0 * (qd[a] - qd[b]), -2.0 * (qd[a] - qd[b]));
@@ -79,7 +79,7 @@ impl Source<'_> {
                     }
                 }
                 Force::Spring(spring) => {
-                    let (a, b) = (2 * spring.a.0, 2 * spring.b.0);
+                    let (a, b) = (2 * spring.a.index(), 2 * spring.b.index());
                     let L = [q[a] - q[b], q[a + 1] - q[b + 1]];
                     let Ld = [qd[a] - qd[b], qd[a + 1] - qd[b + 1]];
                     let length = product(&L, &L).sqrt();

@@ -30,5 +30,5 @@ pub(crate) fn add(gears: &Gears, shapes: &mut Shapes<'_>) {
 /// The distance of two particles \[m\].
 fn length([a, b]: [ParticleId; 2], shapes: &Shapes<'_>) -> f64 {
     let (d, q) = (shapes.system.dimension(), shapes.state.positions());
-    (0..d).map(|k| q[d * a.0 + k] - q[d * b.0 + k]).map(|x| x * x).sum::<f64>().sqrt()
+    (0..d).map(|k| q[d * a.index() + k] - q[d * b.index() + k]).map(|x| x * x).sum::<f64>().sqrt()
 }

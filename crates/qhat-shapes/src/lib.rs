@@ -13,7 +13,7 @@
 //! let mut builder = System::builder(Dimension::Two);
 //! let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
 //! let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
-//! builder.constraint("rod", Distance::new(hook, bob, 1.0)).force(Gravity { acceleration: [0.0, -9.81, 0.0] });
+//! builder.with_constraint("rod", Distance::new(hook, bob, 1.0)).force(Gravity { acceleration: [0.0, -9.81, 0.0] });
 //! let (system, state) = builder.build()?;
 //! assert_eq!(shapes(&system, &state)[0].kind, ShapeKind::Rod);
 //!

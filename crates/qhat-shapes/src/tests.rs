@@ -1,5 +1,7 @@
 //! The list of shapes: kinds, particles, points and sizes of every family, and the changes with time.
 
+#![expect(non_snake_case, reason = "the corners of a square are A, B, C, D")]
+
 use super::*;
 use ShapeKind::{DrivenRod, Ground, Line, Rod, Rope, Strut, Tie, Wheel, Wire};
 use qhat::{
@@ -8,10 +10,11 @@ use qhat::{
     System,
 };
 
-const A: ParticleId = ParticleId(0);
-const B: ParticleId = ParticleId(1);
-const C: ParticleId = ParticleId(2);
-const D: ParticleId = ParticleId(3);
+/// The corners of the square.
+fn corners() -> [ParticleId; 4] {
+    let mut builder = System::builder(Dimension::Two);
+    ["a", "b", "c", "d"].map(|name| builder.particle(Particle::at(name, [0.0; 2])))
+}
 
 fn expression(text: &str, purpose: Purpose) -> Expression {
     Expression::parse(text, &Scope::new(purpose, Dimension::Two, &|_| None)).unwrap()
@@ -41,6 +44,7 @@ fn kinds(shapes: &[Shape]) -> Vec<ShapeKind> {
 
 #[test]
 fn a_pulley_is_a_cord_and_a_ratio_ties() {
+    let [A, B, C, D] = corners();
     let cord = drawn([Lengths::pulley(&[A, B, C], 6.0).into()]);
     assert_eq!(kinds(&cord), [ShapeKind::Cord; 2]);
     assert_eq!(cord[1].particles, [B, C]);
@@ -49,6 +53,7 @@ fn a_pulley_is_a_cord_and_a_ratio_ties() {
 
 #[test]
 fn a_rope_and_a_strut_know_their_limits() {
+    let [A, B, _, _] = corners();
     let limits = [Limits::rope(A, B, 4.0), Limits::strut(A, B, 2.0), Limits::between(A, B, 1.0, 4.0)];
     let drawn = drawn(limits.map(Constraint::from));
     assert_eq!(kinds(&drawn), [Rope, Strut, Strut]);
@@ -57,13 +62,14 @@ fn a_rope_and_a_strut_know_their_limits() {
 
 #[test]
 fn links_know_their_place_and_every_shape_its_source() {
+    let [A, B, C, D] = corners();
     let rod = |a, b| Constraint::from(Distance::new(a, b, 3.0));
     let (mut builder, names) = (System::builder(Dimension::Two), ["a", "b", "c", "d"]);
     for (name, at) in names.into_iter().zip([[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]]) {
         builder.particle(Particle::at(name, at));
     }
     builder.constraint("nail", Nail::new(A, [0.0; 3]));
-    builder.constraint("ab", rod(A, B)).constraint("bc", Limits::rope(B, C, 4.0)).constraint("cd", rod(C, D));
+    builder.with_constraint("ab", rod(A, B)).with_constraint("bc", Limits::rope(B, C, 4.0)).constraint("cd", rod(C, D));
     builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
     builder.force(Spring { a: A, b: D, stiffness: 1.0, damping: 0.0, rest: 2.0 });
     builder.force(CubicSpring { a: B, b: D, stiffness: 1.0, cubic: 0.0, damping: 0.0, rest: 1.0 });
@@ -84,6 +90,7 @@ fn links_know_their_place_and_every_shape_its_source() {
 
 #[test]
 fn driven_shapes_move_with_time_and_no_others_do() {
+    let [A, B, C, _] = corners();
     let radius = Driven::Function(expression("3 + sin(t)", Purpose::Time));
     let rail = OnLine::fixed(C, [0.0, 3.0, 0.0], [1.0, 0.0, 0.0]).into();
     let (system, state) = system([rail, OnSphere::new(B, A, radius).into()]);
@@ -99,6 +106,7 @@ fn driven_shapes_move_with_time_and_no_others_do() {
 
 #[test]
 fn a_wire_is_drawn_from_end_to_end_once() {
+    let [A, B, _, _] = corners();
     let path = ["s", "s^2"].map(|text| expression(text, Purpose::Curve)).to_vec();
     let curve = Curve::parametric(path, 0.0, 3.0).unwrap();
     let bead = |particle| Constraint::from(OnCurve { particle, curve: curve.clone() });
@@ -110,6 +118,7 @@ fn a_wire_is_drawn_from_end_to_end_once() {
 
 #[test]
 fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
+    let [A, B, C, _] = corners();
     let surface = Surface::HalfSpace { normal: [0.0, 2.0, 0.0], offset: -1.0 };
     let ground = drawn([A, B, C].map(|particle| Obstacle::new(particle, surface.clone()).into()));
     assert_eq!(kinds(&ground), [Ground]);
@@ -118,6 +127,7 @@ fn ground_that_many_meet_is_drawn_once_with_a_unit_normal() {
 
 #[test]
 fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
+    let [A, B, C, D] = corners();
     let wheels = drawn([Gears::mesh([[A, D], [B, C]], [20, 10], 0.0).into()]);
     assert_eq!(kinds(&wheels), [Wheel, Wheel]);
     assert_eq!((wheels[0].size, wheels[1].size), (2.0, 1.0));
@@ -128,6 +138,7 @@ fn wheels_meet_between_their_centres_and_a_rack_touches_its_pinion() {
 
 #[test]
 fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
+    let [A, B, C, _] = corners();
     let point = [2.0, 4.0, 0.0].map(Driven::Constant);
     let nail = drawn([Relation { terms: vec![(A, 2.0)], point }.into()]);
     assert_eq!((nail[0].kind, nail[0].points.as_slice()), (ShapeKind::Nail, [[1.0, 2.0, 0.0]].as_slice()));
@@ -139,6 +150,7 @@ fn a_lone_relation_is_a_nail_and_a_tie_begins_at_its_first_particle() {
 
 #[test]
 fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
+    let [A, B, C, D] = corners();
     let right = std::f64::consts::FRAC_PI_2;
     let angle = Angle::between([A, B], [A, D], right);
     let turned = Angle::from_direction([1.0, 0.0, 0.0], [A, D], right);
@@ -151,4 +163,16 @@ fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
         ([A, D].as_slice(), [[1.0, 0.0, 0.0]].as_slice())
     );
     assert_eq!(all[2].particles, [A, B, C, D]);
+}
+
+/// The engine's enums may grow, so the compiler does not ask for a kind that this crate forgot.
+#[test]
+fn every_kind_is_named_here() {
+    let missing = |source: &str, of: &str, kinds: &[&str]| -> Vec<String> {
+        let names = kinds.iter().map(|kind| format!("{of}::{kind}("));
+        names.filter(|name| !source.contains(name)).collect()
+    };
+    let mut found = missing(include_str!("constraint.rs"), "Constraint", qhat::Constraint::KINDS);
+    found.extend(missing(include_str!("force.rs"), "Force", qhat::Force::KINDS));
+    assert!(found.is_empty(), "crates/qhat-shapes/src does not say how to draw {found:?}");
 }

@@ -5,8 +5,7 @@ use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Projection, Shapes, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
-    Constraint, DistanceForm, EventKind, Feedback, Formulation, Link, NailForm, ParticleId, Settings, Simulation,
-    System, Warning,
+    Constraint, DistanceForm, EventKind, Feedback, Formulation, Link, NailForm, Settings, Simulation, System, Warning,
 };
 use qhat_shapes::{Shape, Source};
 use wasm_bindgen::{JsCast, JsValue};
@@ -25,7 +24,7 @@ pub(crate) fn structure(simulation: &Simulation, name: &str, description: &str, 
         .with("particle_names", strings(system.particle_names()))
         .with("row_names", strings(system.row_names()))
         .with("masses", numbers(system.masses()))
-        .with("fixed", list((0..system.particle_count()).map(|i| system.is_fixed(ParticleId(i)))))
+        .with("fixed", list(system.particles().map(|particle| system.is_fixed(particle))))
         .with("shapes", shapes(system, &qhat_shapes::shapes(system, simulation.state())))
         .finish()
 }
@@ -41,7 +40,7 @@ pub(crate) fn shapes(system: &System, shapes: &[Shape]) -> Shapes {
             .with("kind", shape.kind.name())
             .with("of", Record::new().with("list", source).with("index", index as u32))
             .with("name", name)
-            .with("particles", list(shape.particles.iter().map(|particle| particle.0 as u32)))
+            .with("particles", list(shape.particles.iter().map(|particle| particle.index() as u32)))
             .with("points", numbers(shape.points.as_flattened()))
             .with("size", shape.size)
             .with("driven", shape.driven)
@@ -92,16 +91,12 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
 
 /// An event: its kind, its constraint and its time; for an impact also the closing speed.
 fn event(event: &qhat::Event) -> Record {
-    let (kind, speed) = match event.kind {
-        EventKind::Impact { speed } => ("impact", Some(speed)),
-        EventKind::Closed => ("closed", None),
-        EventKind::Opened => ("opened", None),
-        EventKind::Slipped => ("slipped", None),
-        EventKind::Stuck => ("stuck", None),
-        EventKind::Broke => ("broke", None),
+    let speed = match event.kind {
+        EventKind::Impact { speed } => Some(speed),
+        _ => None,
     };
-    let record =
-        Record::new().with("kind", kind).with("constraint", event.constraint.as_str()).with("time", event.time);
+    let record = Record::new().with("kind", event.kind.name());
+    let record = record.with("constraint", event.constraint.as_str()).with("time", event.time);
     match speed {
         Some(speed) => record.with("speed", speed),
         None => record,

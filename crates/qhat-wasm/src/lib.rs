@@ -6,7 +6,7 @@
 mod convert;
 mod record;
 
-use qhat::{Integrator, ParticleId, Settings};
+use qhat::{ForceError, Integrator, Settings};
 use qhat_scene::Format;
 use record::{Record, error, list};
 use wasm_bindgen::prelude::*;
@@ -176,7 +176,8 @@ impl Simulation {
 
     /// Takes hold of a particle with a mouse spring towards a target \[m\].
     pub fn grab(&mut self, particle: usize, target: &[f64]) -> Result<(), JsValue> {
-        self.inner.grab(ParticleId(particle), convert::target(target)).map_err(|cause| error("ForceError", cause))
+        let id = self.inner.system().particle_at(particle).ok_or(ForceError::NoParticle { particle });
+        id.and_then(|id| self.inner.grab(id, convert::target(target))).map_err(|cause| error("ForceError", cause))
     }
 
     /// Moves the target of the mouse spring \[m\].

@@ -16,6 +16,7 @@
 //! Particles all in one line, or in space in one plane, cannot be held like this: rods in a line do not resist a
 //! motion across it. Two particles, and three in space, need no more than their rods.
 
+use crate::allowed::GeometryError;
 use crate::number::cross;
 use crate::point::{dot, minus, norm, scaled};
 use crate::space::Dimension;
@@ -32,12 +33,12 @@ const FLAT: f64 = 1e-6;
 /// let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 /// assert_eq!(rigid_rods(Dimension::Two, &square)?.len(), 2 * 4 - 3);
 /// assert!(rigid_rods(Dimension::Three, &square).is_err(), "all in one plane");
-/// # Ok::<(), String>(())
+/// # Ok::<(), qhat::GeometryError>(())
 /// ```
 ///
 /// # Errors
 /// In words: fewer than two points, two at the same place, all in one line, or in space all in one plane.
-pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usize; 2]>, String> {
+pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usize; 2]>, GeometryError> {
     let d = dimension.number();
     let flat: Vec<[f64; 3]> = points.iter().map(|x| std::array::from_fn(|k| if k < d { x[k] } else { 0.0 })).collect();
     let corners = simplex(d, &flat)?;
@@ -48,7 +49,7 @@ pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usiz
     for i in (0..flat.len()).filter(|i| !corners.contains(i)) {
         let to: Vec<[f64; 3]> = corners.iter().map(|&corner| minus(flat[corner], flat[i])).collect();
         if to.iter().any(|&d| norm(d) == 0.0) {
-            return Err("two of its particles are at the same place".into());
+            return Err(GeometryError::ClusterCoincides { point: i });
         }
         let unit: Vec<[f64; 3]> = to.iter().map(|&d| scaled(1.0 / norm(d), d)).collect();
         // The simplex has one corner too many; `left` is the corner to leave out.
@@ -63,9 +64,9 @@ pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usiz
 }
 
 /// d + 1 points that span as much as possible, or all points if there are no more than d.
-fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, String> {
+fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, GeometryError> {
     if points.len() < 2 {
-        return Err("a rigid cluster has two particles or more".into());
+        return Err(GeometryError::ClusterCount);
     }
     let farthest = |from: &dyn Fn([f64; 3]) -> f64| {
         let better = |best: usize, i: usize| if from(points[i]) > from(points[best]) { i } else { best };
@@ -76,7 +77,7 @@ fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, String> {
     let bar = minus(points[b], points[a]);
     let length = norm(bar);
     if !(length > 0.0 && length.is_finite()) {
-        return Err("its particles are at the same place, or too far apart to measure".into());
+        return Err(GeometryError::ClusterExtent);
     }
     if points.len() == 2 {
         return Ok(vec![a, b]);
@@ -84,7 +85,7 @@ fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, String> {
     let off_line = |x: [f64; 3]| norm(cross(bar, minus(x, points[a]))) / (length * length);
     let c = farthest(&off_line);
     if off_line(points[c]) < FLAT {
-        return Err("its particles lie in one line, which rods between them cannot hold; add one beside it".into());
+        return Err(GeometryError::ClusterLine);
     }
     if d == 2 || points.len() == 3 {
         return Ok(vec![a, b, c]);
@@ -93,7 +94,7 @@ fn simplex(d: usize, points: &[[f64; 3]]) -> Result<Vec<usize>, String> {
     let off_plane = |x: [f64; 3]| dot(normal, minus(x, points[a])).abs() / (norm(normal) * length);
     let e = farthest(&off_plane);
     if off_plane(points[e]) < FLAT {
-        return Err("its particles lie in one plane, which rods between them cannot hold; add one beside it".into());
+        return Err(GeometryError::ClusterPlane);
     }
     Ok(vec![a, b, c, e])
 }

@@ -13,6 +13,7 @@ use crate::system::System;
 
 /// The energy account [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energy {
     /// T.
     pub kinetic: f64,

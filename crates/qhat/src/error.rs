@@ -1,86 +1,11 @@
-//! Typed errors. Each reads as a sentence with the names a user gave.
+//! Why a step was not taken. Each error reads as a sentence with the names that a user gave.
 
-pub use crate::settings::SettingsError;
-
-use crate::settings::Integrator;
+use crate::settings::{Integrator, SettingsError};
 use thiserror::Error;
-
-/// Why a system could not be built.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum BuildError {
-    /// Something is wrong with a particle.
-    #[error("particle `{name}`: {message}")]
-    Particle {
-        /// Its name.
-        name: String,
-        /// What is wrong.
-        message: String,
-    },
-    /// Something is wrong with a constraint.
-    #[error("constraint `{name}`: {message}")]
-    Constraint {
-        /// Its name.
-        name: String,
-        /// What is wrong.
-        message: String,
-    },
-    /// Something is wrong with a force.
-    #[error("force number {index}: {message}")]
-    Force {
-        /// Its place in the order they were added.
-        index: usize,
-        /// What is wrong.
-        message: String,
-    },
-    /// The factor of A would not fit.
-    #[error(
-        "the constraints are so many and so closely connected that factoring them would take {} GiB of memory; the limit is {} GiB",
-        memory.div_ceil(1 << 30), limit >> 30
-    )]
-    TooLarge {
-        /// What it would take [bytes].
-        memory: u64,
-        /// What is allowed [bytes].
-        limit: u64,
-    },
-    /// A feedback coefficient is out of range.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-}
-
-/// Why there is no such body.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum BodyError {
-    /// A mass that is not positive and finite [kg].
-    #[error("the mass of a body must be above 0, but is {0} kg")]
-    Mass(f64),
-    /// A coordinate or moment that is not finite.
-    #[error("the numbers of a body must be finite")]
-    NotFinite,
-    /// Too few or too many edges.
-    #[error("a body has one edge (a bar), two (a plate) or three (a block), not {0}")]
-    EdgeCount(usize),
-    /// Edges without length, along one line, or in one plane.
-    #[error("the edges of a body must have a length, and must not lie in one line, or all three in one plane")]
-    FlatEdges,
-    /// Particles that rounding puts at the same place, or out of range.
-    #[error("the particles of a body must be at different places, as far as numbers of that size can tell")]
-    Lost,
-    /// A tensor whose two halves differ.
-    #[error("an inertia tensor is symmetric")]
-    NotSymmetric,
-    /// Moments that break the triangle inequality.
-    #[error(
-        "no body has this inertia: none of its principal moments may be negative, or above the sum of the other two"
-    )]
-    Inertia,
-    /// Moments that are all zero.
-    #[error("a body without a moment of inertia is a particle")]
-    NoExtent,
-}
 
 /// Why a step was not taken. The state is the last good one.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum StepError {
     /// A coordinate or velocity became infinite or undefined.
     #[error(

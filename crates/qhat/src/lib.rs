@@ -1,4 +1,85 @@
-//! **qhat**: exact constrained particle dynamics.
+//! **qhat**: exact constrained particle dynamics. Rods do not stretch, loops stay closed, and the force in every constraint
+//! is known.
+//!
+//! ```
+//! use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
+//!
+//! // Model, hold, push.
+//! let mut builder = System::builder(Dimension::Two);
+//! let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
+//! let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
+//! let rod = builder.constraint("rod", Distance::new(pivot, bob, 1.0));
+//! builder.force(Gravity::new([0.0, -9.81]));
+//! let (system, state) = builder.build()?;
+//!
+//! // Step.
+//! let mut simulation = Simulation::new(system, state, Settings::default())?;
+//! let report = simulation.step()?; // one frame of 0.01 s
+//! assert!(report.max_relative_length_error < 1e-10);
+//!
+//! // Look.
+//! let tension = simulation.tension_of(rod).unwrap();
+//! assert!((tension - 2.0 * 9.81).abs() < 1e-9); // N: the bob hangs at rest
+//! assert!((simulation.support(pivot)[1] + 2.0 * 9.81).abs() < 1e-9); // N, on the ground
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The five things one does
+//!
+//! **Model.** A [`System::builder`] collects [`Particle`]s, constraints and forces, and gives an id for each. [`Body`] makes
+//! rigid bodies of particles and rods, [`rigid_rods`] holds a cluster of particles together.
+//!
+//! **Hold.** A constraint keeps a function of the positions at zero, exactly:
+//!
+//! | to hold | there are |
+//! |---|---|
+//! | a distance | [`Distance`], [`Limits`] (a rope, a strut), [`Lengths`] (a rope over pulleys) |
+//! | a place | [`Nail`], [`Relation`], [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] with a [`Curve`] |
+//! | a direction or angle | [`Direction`], [`Angle`] (a motor), [`Gears`] |
+//! | an area or a volume | [`Area`], [`Volume`] |
+//! | a side of a surface | [`Obstacle`] with a [`Surface`], restitution and friction |
+//! | a function of one's own | [`ExpressionConstraint`] with an [`Expression`] |
+//!
+//! A number that is [`Driven`] follows a function of time: `Driven::text("2*pi*t")`.
+//!
+//! **Push.** Forces: [`Gravity`], [`Drag`], [`AirDrag`], [`Spring`], [`CubicSpring`], [`TorsionSpring`], [`PointForce`],
+//! [`HarmonicForce`], [`Actuator`], [`CentralForce`], [`InverseSquare`], [`Pressure`], [`Gas`], [`ExpressionForce`],
+//! [`ExpressionPotential`].
+//!
+//! **Step.** [`Simulation::step`] and [`Simulation::advance`] go on by a frame and tell in a [`StepReport`] how well the
+//! constraints hold, which [`Event`]s happened and what to be warned of. [`Settings`] choose the [`Integrator`], the frame
+//! and the tolerance. [`run_all`] and [`step_all`] run many simulations on every core. Below all this are two pure
+//! functions, [`evaluate`] and [`step`].
+//!
+//! **Look.** [`Simulation::links`] for tensions, [`reaction`](Simulation::reaction) for the multipliers of a constraint,
+//! [`support`](Simulation::support) for the force on the ground, [`energy`](Simulation::energy), and [`Terms`] for every
+//! symbol of the equation. Between steps, [`Simulation::set_force`] changes a force, and [`Simulation::grab`] takes hold of
+//! a particle.
+//!
+//! Everything is f64 in SI units. Vectors are flat, particle after particle (x1 y1 x2 y2 …); where a function takes one
+//! vector, it takes `[f64; 2]` and `[f64; 3]` alike. No files, no network, no printing; the same input gives the same bits
+//! on every target.
+//!
+//! # Words
+//!
+//! Scene files have words of their own for some of it:
+//!
+//! | scene | Rust |
+//! |---|---|
+//! | `kind = "distance"` | [`Distance::new`]; with a `length` of t [`Distance::driven`] |
+//! | `rope`, `strut`, `limits` | [`Rope::new`], [`Strut::new`], [`Limits::between`] |
+//! | `nail` | [`Nail::new`]; at a point of t [`Nail::driven`] |
+//! | `pulley`, `length-ratio` | [`Lengths::pulley`], [`Lengths::ratio`] |
+//! | `coincidence`, `midpoint`, `center-of-mass` | [`Relation::coincidence`], [`Relation::midpoint`], [`Relation::center_of_mass`] |
+//! | `line`, `plane`, `sphere`, `circle`, `curve` | [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] |
+//! | `rigid` | [`rigid_rods`] and [`Distance`] |
+//! | `ground`, `wall`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
+//! | `fixed = true` | [`Particle::fixed`] |
+//! | `integrator = "implicit"` or `"backward-euler"` | [`Integrator::Implicit`] |
+//! | `[forces] gravity`, `drag` | [`Gravity`], [`Drag`] |
+//! | `[feedback] ks`, `kd`, `diagonal_drag`, `elasticity` | [`Feedback`] |
+//!
+//! # The equation
 //!
 //! Particles at q move under applied forces Q and constraints C(q, t) = 0. Each evaluation finds the multipliers λ of
 //!
@@ -7,50 +88,55 @@
 //! Q̂ = s Jᵀ λ,   q̈ = W (Q + Q̂)
 //! ```
 //!
-//! and with them the constraint force Q̂ that cancels the illegal part of Q. `ks`, `kd` are feedback, ε is the diagonal drag
-//! and s = 1 − elasticity: the two "stability menus" of the program this engine descends from. The default integrator needs
-//! none of them.
+//! and with them the constraint force Q̂ that cancels the part of Q that would break the constraints. `ks` and `kd` are
+//! feedback, ε is the diagonal drag, and s = 1 − elasticity; integrators that project use none of them.
 //!
+//! # Debug builds
+//!
+//! Cargo does not pass the profile of a dependency on, so that a debug build of your program compiles qhat without
+//! optimisation. These eight lines in the `Cargo.toml` of your workspace make it as fast as a release build:
+//!
+//! ```toml
+//! [profile.dev.package.qhat]
+//! opt-level = 3
+//! codegen-units = 1
+//! debug-assertions = false
+//! overflow-checks = false
+//!
+//! [profile.dev.package."*"]
+//! opt-level = 3
 //! ```
-//! use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
 //!
-//! let mut builder = System::builder(Dimension::Two);
-//! let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
-//! let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
-//! builder.constraint("rod", Distance::new(pivot, bob, 1.0));
-//! builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
-//! let (system, state) = builder.build()?;
+//! MEASURED
 //!
-//! let mut simulation = Simulation::new(system, state, Settings::default())?;
-//! simulation.step()?;
-//! assert!((simulation.tension()[0] - 2.0 * 9.81).abs() < 1e-9); // N: it hangs at rest
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! # Features
 //!
-//! Two pure doors, [`evaluate`] and [`step`], and one easy one, [`Simulation`]. Everything is f64 in SI units; vectors are
-//! flat, particle after particle (x1 y1 x2 y2 …). No files, no network, no printing; the same input gives the same bits on
-//! every target.
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `rayon` | yes | threads; without it, the same bits on one |
+//! | `serde` | no | `Serialize` and `Deserialize` for settings, reports, events, energies, warnings and ids; `Serialize` for terms |
+//! | `mint` | no | points and vectors of other crates wherever a [`Vector`] goes |
 
 // The letters of the derivations are the letters of the code: Q, W, C, J, A and λ keep their case.
 #![allow(non_snake_case)]
 
-pub mod constraint;
 pub mod expression;
-pub mod force;
-pub mod linalg;
 
 mod allowed;
 mod body;
 mod chains;
 mod cluster;
+mod constraint;
 mod contact;
 mod drift;
 mod driven;
 mod energy;
 mod ensemble;
 mod error;
+mod force;
 mod hyper;
 mod integrate;
+mod linalg;
 mod modes;
 mod multiplier;
 mod number;
@@ -67,28 +153,30 @@ mod system;
 mod terms;
 mod threads;
 
-pub use body::Body;
+pub use allowed::{GeometryError, ValueError};
+pub use body::{Body, BodyError};
 pub use cluster::rigid_rods;
 #[doc(inline)]
 pub use constraint::*;
 pub use driven::Driven;
 pub use energy::Energy;
-pub use ensemble::step_all;
-pub use error::{BodyError, BuildError, SettingsError, StepError};
-pub use expression::{Expression, ExpressionError, Purpose, Scope};
+pub use ensemble::{run_all, step_all};
+pub use error::StepError;
+pub use expression::{Expression, ExpressionError, ParameterError, Purpose, Scope};
 pub use force::{
     Actuator, AirDrag, CentralForce, CubicSpring, CustomForce, CustomPotential, Drag, ExpressionForce,
-    ExpressionPotential, Facet, Force, Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce, Pressure,
-    Spring, TorsionSpring,
+    ExpressionPotential, Facet, Force, ForceError, Gas, Gravity, HarmonicForce, InverseSquare, MouseSpring, PointForce,
+    Pressure, Spring, TorsionSpring,
 };
 pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
-pub use report::{Event, EventKind, Projection, Solver, StepReport, Warning};
-pub use settings::{Feedback, Integrator, Settings};
+pub use point::Vector;
+pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
+pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;
-pub use space::{Dimension, ParticleId};
+pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
-pub use system::{Particle, System, SystemBuilder};
+pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

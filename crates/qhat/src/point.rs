@@ -4,6 +4,51 @@ pub(crate) use crate::number::{dot, minus, norm, scaled};
 
 use crate::space::ParticleId;
 
+/// A point or vector of two or three components, as functions take it: from `[x, y]`, where z is 0, or `[x, y, z]`.
+///
+/// ```
+/// use qhat::Vector;
+/// assert_eq!(Vector::from([1.0, 2.0]), Vector::from([1.0, 2.0, 0.0]));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector(pub(crate) [f64; 3]);
+
+impl From<[f64; 2]> for Vector {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Vector([x, y, 0.0])
+    }
+}
+
+impl From<[f64; 3]> for Vector {
+    fn from(components: [f64; 3]) -> Self {
+        Vector(components)
+    }
+}
+
+impl From<Vector> for [f64; 3] {
+    fn from(vector: Vector) -> Self {
+        vector.0
+    }
+}
+
+/// Conversions from and to the vectors of other crates.
+#[cfg(feature = "mint")]
+mod with_mint {
+    use super::Vector;
+
+    macro_rules! through_mint {
+        ($($kind:ident: $size:literal,)*) => {$(
+            impl From<mint::$kind<f64>> for Vector {
+                fn from(vector: mint::$kind<f64>) -> Self {
+                    Vector::from(<[f64; $size]>::from(vector))
+                }
+            }
+        )*};
+    }
+
+    through_mint! { Vector2: 2, Point2: 2, Vector3: 3, Point3: 3, }
+}
+
 /// A point or vector in D dimensions.
 pub(crate) type Point<const D: usize> = [f64; D];
 

@@ -3,10 +3,13 @@
 use crate::drift::Drift;
 use crate::energy::Energy;
 use crate::settings::Integrator;
+use crate::space::ConstraintId;
 use std::fmt;
 
 /// One frame or step in numbers. Maxima are over its substeps.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct StepReport {
     /// Substeps taken (1 for a step of a fixed-step integrator).
     pub substeps: usize,
@@ -24,6 +27,9 @@ pub struct StepReport {
     pub max_residual_rate: f64,
     /// max ||d| − r|/r over the rigid rods.
     pub max_relative_length_error: f64,
+    /// The largest tension or thrust of any link at the end of any substep; recorded where
+    /// [`Simulation::record_tension`](crate::Simulation::record_tension) asks for it.
+    pub max_tension: Option<MaxTension>,
     /// Energies at the end.
     pub energy: Energy,
     /// Who carried the state; with auto, whom it chose.
@@ -38,6 +44,8 @@ pub struct StepReport {
 
 /// Something that happened at a moment.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Event {
     /// t [s].
     pub time: f64,
@@ -49,6 +57,8 @@ pub struct Event {
 
 /// What can happen to a constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum EventKind {
     /// It was hit faster than what rests.
     Impact {
@@ -65,6 +75,50 @@ pub enum EventKind {
     Stuck,
     /// It broke, for good.
     Broke,
+}
+
+/// The largest tension or thrust of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MaxTension {
+    /// The tension [N], negative if it is a thrust.
+    pub tension: f64,
+    /// The rod, rope or strut.
+    pub link: ConstraintId,
+    /// t [s].
+    pub time: f64,
+}
+
+impl MaxTension {
+    /// The larger of two in size, the former if they are equal.
+    pub(crate) fn larger(former: Option<Self>, next: Option<Self>) -> Option<Self> {
+        match (former, next) {
+            (Some(former), Some(next)) if next.tension.abs() > former.tension.abs() => Some(next),
+            (Some(former), _) => Some(former),
+            (None, next) => next,
+        }
+    }
+}
+
+impl EventKind {
+    /// The word for it: `impact`, `closed`, `opened`, `slipped`, `stuck` or `broke`.
+    pub fn name(self) -> &'static str {
+        match self {
+            EventKind::Impact { .. } => "impact",
+            EventKind::Closed => "closed",
+            EventKind::Opened => "opened",
+            EventKind::Slipped => "slipped",
+            EventKind::Stuck => "stuck",
+            EventKind::Broke => "broke",
+        }
+    }
+}
+
+impl fmt::Display for EventKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 impl StepReport {
@@ -92,6 +146,7 @@ impl StepReport {
         self.max_residual = self.max_residual.max(next.max_residual);
         self.max_residual_rate = self.max_residual_rate.max(next.max_residual_rate);
         self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
+        self.max_tension = MaxTension::larger(self.max_tension, next.max_tension);
         self.energy = next.energy;
         (self.integrator, self.solver) = (next.integrator, next.solver);
         self.events.extend(next.events);
@@ -119,6 +174,8 @@ impl StepReport {
 
 /// A path to the multipliers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Solver {
     /// Rows of A = J W Jᵀ, each component by its own method: see [`crate::System::components`].
     #[default]
@@ -141,6 +198,8 @@ impl fmt::Display for Solver {
 
 /// A condition that did not stop the step.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Warning {
     /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
     Singular,
@@ -201,6 +260,8 @@ impl fmt::Display for Warning {
 
 /// What it took to bring a state onto C = 0 and Ċ = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Projection {
     /// The farthest any particle was moved [m]; 0 if the state was consistent.
     pub moved: f64,

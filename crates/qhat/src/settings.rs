@@ -6,6 +6,8 @@ use thiserror::Error;
 
 /// How a state is carried over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
     /// The source's explicit Euler, order 1. Drifts, and gains energy: it shows why the two stability menus exist.
     Euler,
@@ -23,6 +25,7 @@ pub enum Integrator {
     /// Runge–Kutta of order 8 on the equation, projected after each step; substeps of its own choosing.
     Dop853,
     /// Backward Euler solved at the end of the step, order 1, projected: takes any load at any h, and dissipates.
+    #[cfg_attr(feature = "serde", serde(alias = "backward-euler"))]
     Implicit,
     /// The backward differentiation formula of order 2, projected, with backward Euler for its hard steps.
     Bdf2,
@@ -99,6 +102,8 @@ impl FromStr for Integrator {
     type Err = SettingsError;
 
     fn from_str(name: &str) -> Result<Self, SettingsError> {
+        // The name of the method in books, beside the word of scenes.
+        let name = if name == "backward-euler" { Integrator::Implicit.name() } else { name };
         let found = Integrator::ALL.into_iter().find(|integrator| integrator.name() == name);
         found.ok_or_else(|| SettingsError::UnknownIntegrator { name: name.to_owned() })
     }
@@ -106,6 +111,8 @@ impl FromStr for Integrator {
 
 /// What keeps a drifting integrator near C = 0, and the source's two menus. Integrators that project use none of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Feedback {
     /// ks [1/s²], ≥ 0, default 0: pulls C to zero.
     pub ks: f64,
@@ -136,6 +143,8 @@ impl Feedback {
 
 /// How to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Settings {
     /// h [s], > 0, default 0.01: the step of a fixed-step integrator, the frame of an adaptive one.
     pub h: f64,
@@ -196,6 +205,7 @@ fn in_range(name: &'static str, value: f64, allowed: bool, range: &'static str) 
 
 /// Why a setting was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SettingsError {
     /// A number outside its range.
     #[error("{name} must be {range}, but is {value}")]

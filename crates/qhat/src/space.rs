@@ -1,4 +1,4 @@
-//! The ground floor: how many dimensions there are, and the number of a particle.
+//! The ground floor: the number of dimensions, and the ids of particles, constraints and forces.
 
 /// Number of space dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +36,30 @@ macro_rules! in_dimension {
 }
 pub(crate) use in_dimension;
 
-/// The number of a particle: its place in the order they were added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ParticleId(pub usize);
+macro_rules! ids {
+    ($($(#[$doc:meta])* $id:ident,)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        pub struct $id(pub(crate) usize);
+
+        impl $id {
+            /// The place in the order of addition, from 0: the index into the arrays of a [`System`](crate::System).
+            pub fn index(self) -> usize {
+                self.0
+            }
+        }
+    )*};
+}
+
+ids! {
+    /// The id of a particle, from [`SystemBuilder::particle`](crate::SystemBuilder::particle) or
+    /// [`System::particle`](crate::System::particle).
+    ParticleId,
+    /// The id of a constraint, from [`SystemBuilder::constraint`](crate::SystemBuilder::constraint) or
+    /// [`System::constraint`](crate::System::constraint).
+    ConstraintId,
+    /// The id of a force, from [`SystemBuilder::force`](crate::SystemBuilder::force) or
+    /// [`System::force`](crate::System::force).
+    ForceId,
+}

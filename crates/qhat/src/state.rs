@@ -16,6 +16,7 @@ pub struct State {
 
 /// Energy that has crossed the borders of the system since t = 0 [J]; positive into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Of forces without a potential: drag, dampers. Negative where they take energy.
     pub dissipation: f64,
@@ -85,15 +86,21 @@ impl State {
         self.work
     }
 
-    /// The same state at other positions [m] and velocities [m/s]; whatever was carried from earlier steps is dropped.
+    /// The same state with other positions [m] and velocities [m/s], d·n numbers each; t, the work and what is broken stay.
     ///
     /// # Panics
     /// If the lengths differ from d·n.
-    pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
+    pub fn with_motion(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
         let mut state = State { q: positions, qd: velocities, carry: None, ..self.clone() };
         // Which contacts hold there, the next frame finds; what is broken stays so.
         state.modes.contacts.fill(Mode::Open);
         state
+    }
+
+    /// The same state with other positions [m] and velocities [m/s].
+    #[deprecated(since = "0.1.0", note = "use `with_motion`")]
+    pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
+        self.with_motion(positions, velocities)
     }
 }

@@ -12,6 +12,8 @@ use crate::system::System;
 
 /// Every symbol of one evaluation. n particles in d dimensions, N = d·n, m rows, SI units; [`NOTATION`] lists them.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Terms {
     /// t [s].
     pub time: f64,
@@ -119,7 +121,7 @@ pub const NOTATION: [Notation; 21] = [
 /// use qhat::{Dimension, Gravity, Nail, Particle, System, evaluate};
 /// let mut builder = System::builder(Dimension::Two);
 /// let bob = builder.particle(Particle::at("bob", [0.0, 0.0]).with_mass(3.0));
-/// builder.constraint("nail", Nail::new(bob, [0.0; 3])).force(Gravity { acceleration: [0.0, -10.0, 0.0] });
+/// builder.with_constraint("nail", Nail::new(bob, [0.0; 3])).force(Gravity { acceleration: [0.0, -10.0, 0.0] });
 /// let (system, state) = builder.build()?;
 /// let reaction = evaluate(&system, &state).multipliers; // the nail carries m g, to roundoff
 /// assert!(reaction[0] == 0.0 && (reaction[1] - 30.0).abs() < 1e-13);

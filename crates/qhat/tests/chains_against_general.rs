@@ -74,7 +74,7 @@ fn the_classic_formulation_and_two_rods_between_the_same_particles() {
         let a = Particle::at("a", [0.0, 0.0]);
         let a = builder.particle(if is_held { a.fixed() } else { a });
         let b = builder.particle(Particle::at("b", [1.0, 0.0]));
-        builder.constraint("one", Distance::new(a, b, 1.0)).constraint("other", Distance::new(b, a, 1.0));
+        builder.with_constraint("one", Distance::new(a, b, 1.0)).constraint("other", Distance::new(b, a, 1.0));
         builder.force(systems::gravity());
         let (system, state) = builder.build().unwrap();
         let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Dop853, FRAME)).unwrap();

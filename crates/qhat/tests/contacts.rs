@@ -2,8 +2,8 @@
 
 use crate::systems::{FRAME, G, gravity, settings};
 use qhat::{
-    Dimension, Distance, EventKind, Integrator, Limits, Obstacle, Particle, ParticleId, Settings, Simulation,
-    StepError, StepReport, Surface, System, SystemBuilder,
+    Dimension, Distance, EventKind, Integrator, Limits, Obstacle, Particle, Settings, Simulation, StepError,
+    StepReport, Surface, System, SystemBuilder,
 };
 
 fn ground() -> Surface {
@@ -32,7 +32,7 @@ fn bounces_come_when_they_should() {
     let (height, e) = (1.0, 0.5);
     let mut builder = System::builder(Dimension::Two);
     let ball = builder.particle(Particle::at("ball", [0.0, height]));
-    builder.constraint("ground", Obstacle { restitution: e, ..Obstacle::new(ball, ground()) }).force(gravity());
+    builder.with_constraint("ground", Obstacle { restitution: e, ..Obstacle::new(ball, ground()) }).force(gravity());
     let mut simulation = start(builder);
     let reports = run(&mut simulation, 2.0);
     let fall = (2.0 * height / G).sqrt();
@@ -65,7 +65,9 @@ fn coulomb_on_a_slope() {
             let mut builder = System::builder(dimension);
             let block = builder.particle(Particle::at("block", vec![0.0; dimension.number()]));
             let surface = Surface::HalfSpace { normal: [sin, cos, 0.0], offset: 0.0 };
-            builder.constraint("slope", Obstacle { friction: mu, ..Obstacle::new(block, surface) }).force(gravity());
+            builder
+                .with_constraint("slope", Obstacle { friction: mu, ..Obstacle::new(block, surface) })
+                .force(gravity());
             let mut simulation = start(builder);
             run(&mut simulation, 1.0);
             let q = simulation.state().positions();
@@ -85,7 +87,7 @@ fn what_slides_stops() {
         let mut builder = System::builder(Dimension::Three);
         let puck = Particle::at("puck", [0.0; 3]).with_velocity([v * direction[0], 0.0, v * direction[1]]);
         let puck = builder.particle(puck);
-        builder.constraint("ice", Obstacle { friction: mu, ..Obstacle::new(puck, ground()) }).force(gravity());
+        builder.with_constraint("ice", Obstacle { friction: mu, ..Obstacle::new(puck, ground()) }).force(gravity());
         let mut simulation = start(builder);
         let reports = run(&mut simulation, 2.0);
         let q = simulation.state().positions();
@@ -104,7 +106,7 @@ fn a_rope_goes_taut_and_holds() {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.5, 0.0]));
-    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    builder.with_constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
     let mut simulation = start(builder);
     let reports = run(&mut simulation, 3.0);
     let taut = (2.0 * (0.75_f64).sqrt() / G).sqrt();
@@ -125,7 +127,7 @@ fn a_rope_goes_slack_where_its_tension_ends() {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_velocity([v2.sqrt(), 0.0]));
-    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    builder.with_constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
     let mut simulation = start(builder);
     let mut opened = None;
     for _ in 0..120 {
@@ -149,7 +151,7 @@ fn a_rod_breaks_where_its_tension_passes_the_limit() {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
-    builder.constraint("rod", Distance::new(pivot, bob, 1.0).breaking_at(2.0 * G)).force(gravity());
+    builder.with_constraint("rod", Distance::new(pivot, bob, 1.0).breaking_at(2.0 * G)).force(gravity());
     let mut simulation = start(builder);
     let before = simulation.energy().total();
     let reports = run(&mut simulation, 1.0);
@@ -169,7 +171,7 @@ fn systems_pendulum() -> Simulation {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
-    builder.constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
+    builder.with_constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
     start(builder)
 }
 
@@ -227,7 +229,7 @@ fn bridge() -> (SystemBuilder, usize) {
     }
     let count = deck.len() + 4;
     for i in 0..count {
-        let barrier = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(ParticleId(i), ground()) };
+        let barrier = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(crate::systems::id(i), ground()) };
         builder.constraint(format!("ground{i}"), barrier);
     }
     builder.force(gravity());

@@ -11,8 +11,8 @@ use qhat::{
 fn surfaces() -> [Surface; 3] {
     [
         Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 },
-        Surface::Ball { centre: [-0.5, -0.5, 0.0], radius: 1.0, inside: false },
-        Surface::Box { centre: [1.0, 0.0, 0.0], half: [0.5, 0.4, 0.5] },
+        Surface::Ball { center: [-0.5, -0.5, 0.0], radius: 1.0, inside: false },
+        Surface::Box { center: [1.0, 0.0, 0.0], half: [0.5, 0.4, 0.5] },
     ]
 }
 
@@ -44,9 +44,10 @@ fn heap(random: &mut Random) -> SystemBuilder {
         let (a, b, length) = (ids[other], ids[i], between(&places[other], &places[i]));
         let name = format!("link{i}");
         match random.below(4) {
-            0 => builder.constraint(name, Distance::new(a, b, length)),
-            1 => builder.constraint(name, Limits { restitution, ..Limits::rope(a, b, 1.05 * length) }),
-            2 => builder.constraint(name, Limits { restitution, ..Limits::between(a, b, 0.8 * length, 1.1 * length) }),
+            0 => builder.with_constraint(name, Distance::new(a, b, length)),
+            1 => builder.with_constraint(name, Limits { restitution, ..Limits::rope(a, b, 1.05 * length) }),
+            2 => builder
+                .with_constraint(name, Limits { restitution, ..Limits::between(a, b, 0.8 * length, 1.1 * length) }),
             _ => &mut builder,
         };
     }

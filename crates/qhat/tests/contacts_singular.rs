@@ -35,8 +35,8 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
             let (a, b) = (end("lower", 0.0, 0.0, lower), end("upper", cos, sin, upper));
             let ground = Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 };
             builder
-                .constraint("rod", Distance::new(a, b, 1.0))
-                .constraint("ground", Obstacle { friction, ..Obstacle::new(a, ground) })
+                .with_constraint("rod", Distance::new(a, b, 1.0))
+                .with_constraint("ground", Obstacle { friction, ..Obstacle::new(a, ground) })
                 .force(gravity());
             let mut simulation = start(builder);
             simulation.step().unwrap();
@@ -71,8 +71,8 @@ fn what_slides_over_an_edge_falls_from_there() {
             velocity[0] = speed;
             let particle = Particle::at("puck", [1.0 - radius - way, 0.5, 0.1][..d].to_vec()).with_velocity(velocity);
             let puck = builder.particle(particle);
-            let block = Surface::Box { centre: [0.0; 3], half: [1.0, 0.5, 1.0] };
-            builder.constraint("box", Obstacle { friction, ..Obstacle::new(puck, block) }).force(gravity());
+            let block = Surface::Box { center: [0.0; 3], half: [1.0, 0.5, 1.0] };
+            builder.with_constraint("box", Obstacle { friction, ..Obstacle::new(puck, block) }).force(gravity());
             let mut simulation = start(builder);
             for _ in 0..30 {
                 simulation.step().unwrap();

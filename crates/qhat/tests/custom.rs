@@ -27,11 +27,16 @@ fn on_spiral() -> [f64; 2] {
     [2.0 * 20.0_f64.cos(), 2.0 * 20.0_f64.sin()]
 }
 
-const BEAD: ParticleId = ParticleId(0);
-const BOB: ParticleId = ParticleId(1);
+fn bead() -> ParticleId {
+    crate::systems::id(0)
+}
+
+fn bob() -> ParticleId {
+    crate::systems::id(1)
+}
 
 fn expression(text: &str, purpose: Purpose, dimension: Dimension) -> Expression {
-    let particle = |name: &str| ["bead", "bob"].iter().position(|known| *known == name).map(ParticleId);
+    let particle = |name: &str| ["bead", "bob"].iter().position(|known| *known == name).map(crate::systems::id);
     Expression::parse(text, &Scope::new(purpose, dimension, &particle)).unwrap()
 }
 
@@ -57,7 +62,7 @@ fn spiral(spiral: Constraint, rod: Constraint) -> (System, State) {
 
 fn custom() -> (System, State) {
     let rod = |x: &[[Hyper; 3]], t: Hyper| (x[1][0] - x[0][0]).hypot(x[1][1] - x[0][1]) - 1.0 - 0.1 * (2.0 * t).sin();
-    spiral(Custom::new([BEAD], Spiral { a: 0.1 }).into(), Custom::new([BEAD, BOB], rod).into())
+    spiral(Custom::new([bead()], Spiral { a: 0.1 }).into(), Custom::new([bead(), bob()], rod).into())
 }
 
 fn typed() -> (System, State) {
@@ -117,9 +122,10 @@ fn spring_potential(x: &[[Hyper; 3]], _: Hyper) -> Hyper {
 
 #[test]
 fn a_custom_potential_moves_as_a_spring_does() {
-    let spring = || Spring { a: BEAD, b: BOB, stiffness: 20.0, damping: 0.0, rest: 1.0 }.into();
+    let spring = || Spring { a: bead(), b: bob(), stiffness: 20.0, damping: 0.0, rest: 1.0 }.into();
     for integrator in [Integrator::Dop853, Integrator::Rattle, Integrator::Implicit, Integrator::Rk4] {
-        let (own, simulation) = run(pulled(CustomForce::new([BEAD, BOB], spring_potential).into()), integrator, 300);
+        let (own, simulation) =
+            run(pulled(CustomForce::new([bead(), bob()], spring_potential).into()), integrator, 300);
         let (builtin, _) = run(pulled(spring()), integrator, 300);
         let apart = largest_difference(&own, &builtin);
         println!("{integrator}: {apart:e}");
@@ -134,7 +140,7 @@ fn a_custom_potential_moves_as_a_spring_does() {
 #[test]
 fn a_custom_potential_may_depend_on_time() {
     let driven = |x: &[[Hyper; 3]], t: Hyper| 8.0 * (x[0][0] - 0.3 * (4.0 * t).sin()).powi(2) + x[1][0].cos() * x[0][1];
-    let own = || pulled(CustomForce::new([BEAD, BOB], driven).into());
+    let own = || pulled(CustomForce::new([bead(), bob()], driven).into());
     let text = "8*(bead.x - 0.3*sin(4*t))^2 + cos(bob.x)*bead.y";
     let potential = expression(text, Purpose::Potential, Dimension::Three);
     let (one, simulation) = run(own(), Integrator::Dop853, 300);
@@ -201,10 +207,10 @@ fn what_names_no_particle_or_one_twice_is_refused() {
     };
     let y = |x: &[[Hyper; 3]], _: Hyper| x[0][1];
     assert!(refused(Custom::new([], y)).contains("names no particle"));
-    assert!(refused(Custom::new([BEAD, BEAD], y)).contains("named twice"));
-    assert!(refused(Custom::new([BEAD], y).with_scale(0.0)).contains("must be above 0"));
-    assert!(refused(Custom::new([BEAD], y).with_scale(f64::NAN)).contains("must be above 0"));
-    assert!(!refused(Custom::new([BOB], y)).is_empty(), "a particle that is not there");
+    assert!(refused(Custom::new([bead(), bead()], y)).contains("named twice"));
+    assert!(refused(Custom::new([bead()], y).with_scale(0.0)).contains("must be above 0"));
+    assert!(refused(Custom::new([bead()], y).with_scale(f64::NAN)).contains("must be above 0"));
+    assert!(!refused(Custom::new([bob()], y)).is_empty(), "a particle that is not there");
 
     let refused = |force: CustomForce| -> BuildError {
         let mut builder = System::builder(Dimension::Two);
@@ -213,17 +219,17 @@ fn what_names_no_particle_or_one_twice_is_refused() {
         builder.build().map(|_| ()).unwrap_err()
     };
     assert!(refused(CustomForce::new([], y)).to_string().contains("names no particle"));
-    assert!(refused(CustomForce::new([BEAD, BEAD], y)).to_string().contains("named twice"));
+    assert!(refused(CustomForce::new([bead(), bead()], y)).to_string().contains("named twice"));
 }
 
 #[test]
 fn clones_are_equal_and_others_are_not() {
     let y = |x: &[[Hyper; 3]], _: Hyper| x[0][1];
-    let (one, other) = (Custom::new([BEAD], y), Custom::new([BEAD], y));
+    let (one, other) = (Custom::new([bead()], y), Custom::new([bead()], y));
     assert_eq!(one, one.clone());
     assert_ne!(one, other, "two residuals may be any two functions");
     assert_ne!(one, one.clone().with_scale(2.0));
-    let (one, other) = (CustomForce::new([BEAD], y), CustomForce::new([BEAD], y));
+    let (one, other) = (CustomForce::new([bead()], y), CustomForce::new([bead()], y));
     assert_eq!(one, one.clone());
     assert_ne!(one, other);
     // Neither has numbers to show but its particles.
@@ -256,7 +262,7 @@ fn a_scale_has_the_unit_of_its_residual() {
         builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
         run(builder.build().unwrap(), Integrator::Rattle, 100).0
     };
-    let plain = positions(Custom::new([BEAD], Spiral { a: 0.1 }).with_scale(2.0));
-    let scaled = positions(Custom::new([BEAD], thousandfold).with_scale(2000.0));
+    let plain = positions(Custom::new([bead()], Spiral { a: 0.1 }).with_scale(2.0));
+    let scaled = positions(Custom::new([bead()], thousandfold).with_scale(2000.0));
     assert!(largest_difference(&plain, &scaled) < 1e-10, "{plain:?} {scaled:?}");
 }

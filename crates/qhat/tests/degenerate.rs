@@ -60,8 +60,8 @@ fn both_ends_fixed() {
     let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
     let b = builder.particle(Particle::at("b", [1.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.0, -1.0]));
-    builder.constraint("inert", Distance::new(a, b, 1.0)).constraint("rod", Distance::new(a, bob, 1.0));
-    builder.constraint("nail", Nail::new(b, [1.0, 0.0, 0.0])).force(systems::gravity());
+    builder.with_constraint("inert", Distance::new(a, b, 1.0)).constraint("rod", Distance::new(a, bob, 1.0));
+    builder.with_constraint("nail", Nail::new(b, [1.0, 0.0, 0.0])).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
     assert_eq!((terms.multipliers[0], terms.rank), (0.0, Some(1)), "no multiplier acts through fixed ends");
@@ -91,8 +91,8 @@ fn infeasible_rows_are_named() {
     let mut builder = plane();
     let a = builder.particle(Particle::at("a", [0.0, 0.0]));
     let b = builder.particle(Particle::at("b", [1.0, 0.0]));
-    builder.constraint("left", Nail::new(a, [0.0; 3])).constraint("right", Nail::new(b, [1.2, 0.0, 0.0]));
-    builder.constraint("short", Distance::new(a, b, 1.0)).force(systems::gravity());
+    builder.with_constraint("left", Nail::new(a, [0.0; 3])).constraint("right", Nail::new(b, [1.2, 0.0, 0.0]));
+    builder.with_constraint("short", Distance::new(a, b, 1.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let before = state.clone();
     let error = Simulation::new(system.clone(), state.clone(), settings(Integrator::Rattle)).unwrap_err();
@@ -153,7 +153,7 @@ fn coincident_particles() {
         let mut builder = plane();
         let a = builder.particle(Particle::at("a", [0.3, 0.4]));
         let b = builder.particle(Particle::at("b", [0.3, 0.4]));
-        builder.constraint("rod", Distance { form, ..Distance::new(a, b, 1.0) }).force(systems::gravity());
+        builder.with_constraint("rod", Distance { form, ..Distance::new(a, b, 1.0) }).force(systems::gravity());
         builder.force(qhat::Spring { a, b, stiffness: 10.0, damping: 1.0, rest: 0.5 });
         let (system, state) = builder.build().unwrap();
         let terms = evaluate(&system, &state);
@@ -247,8 +247,8 @@ fn parallelogram_passes_through_flat() {
     let b = builder.particle(Particle::at("b", [2.0, 0.0]).fixed());
     let c = builder.particle(Particle::at("c", [0.0, 1.0]).with_velocity([5.0, 0.0]));
     let d = builder.particle(Particle::at("d", [2.0, 1.0]).with_velocity([5.0, 0.0]));
-    builder.constraint("ac", Distance::new(a, c, 1.0)).constraint("bd", Distance::new(b, d, 1.0));
-    builder.constraint("cd", Distance::new(c, d, 2.0)).force(systems::gravity());
+    builder.with_constraint("ac", Distance::new(a, c, 1.0)).constraint("bd", Distance::new(b, d, 1.0));
+    builder.with_constraint("cd", Distance::new(c, d, 2.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, settings(Integrator::Rattle)).unwrap();
     let (mut worst, mut passages, mut last) = (0.0_f64, 0, 1.0);

@@ -92,7 +92,7 @@ fn star(arms: usize) -> (System, State) {
             builder.constraint(format!("end{i}"), Distance::new(tip, end, norm(&d)));
         }
     }
-    builder.force(systems::gravity()).force(qhat::Drag { coefficient: 0.3 });
+    builder.with_force(systems::gravity()).force(qhat::Drag { coefficient: 0.3 });
     builder.build().unwrap()
 }
 
@@ -123,7 +123,10 @@ fn hubs(d: usize, redundant: bool) -> (System, State) {
             builder.constraint(format!("g{i}"), Distance::new(tip, ground, norm(&x)));
         }
         if i == 3 {
-            builder.constraint("nail", Nail::new(tip, std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))));
+            builder.constraint(
+                "nail",
+                Nail::new(tip, std::array::from_fn::<_, 3, _>(|k| x.get(k).copied().unwrap_or(0.0))),
+            );
         }
         if redundant && i % 20 == 5 {
             builder.constraint(format!("again{i}"), Distance::new(a, tip, apart(&left, &x)));
@@ -160,7 +163,7 @@ fn moving(random: &mut Random, (system, state): (System, State)) -> (System, Sta
         let v = random.within(-1.0, 1.0);
         if system.inverse_masses()[k / d] == 0.0 { 0.0 } else { v }
     });
-    let mut state = state.at(state.positions().to_vec(), v.collect());
+    let mut state = state.with_motion(state.positions().to_vec(), v.collect());
     project(&system, &mut state, &Settings::default(), &mut Workspace::new(&system)).unwrap();
     (system, state)
 }
@@ -211,7 +214,7 @@ fn redundant_systems_equal_the_pseudo_inverse() {
 fn contradicting_rows_come_as_near_as_they_can() {
     let mut random = Random::new(14);
     for (system, state) in [systems::truss(4, true), systems::net(2)] {
-        let state = state.at(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
+        let state = state.with_motion(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
         let terms = evaluate(&system, &state);
         let (lambda, rank) = reference(&terms);
         assert_eq!((terms.rank, rank), (Some(system.row_count() - 1), system.row_count() - 1));
@@ -237,7 +240,7 @@ impl Numbering {
 /// The same system, numbered anew.
 fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, State) {
     let d = system.dimension();
-    let new = |old: ParticleId| ParticleId(numbering.particles.iter().position(|&i| i == old.0).unwrap());
+    let new = |old: ParticleId| systems::id(numbering.particles.iter().position(|&i| i == old.index()).unwrap());
     let mut builder = System::builder(systems::random::dimension(d));
     for &i in &numbering.particles {
         let (x, v) = (&state.positions()[i * d..][..d], &state.velocities()[i * d..][..d]);
@@ -333,7 +336,7 @@ fn sparse_equals_dense() {
             let particle = Particle::at(format!("{i} of {copy}"), x).with_mass(system.masses()[i]);
             builder.particle(if system.inverse_masses()[i] == 0.0 { particle.fixed() } else { particle });
         }
-        let shift = |id: ParticleId| ParticleId(id.0 + copy * system.particle_count());
+        let shift = |id: ParticleId| systems::id(id.index() + copy * system.particle_count());
         for named in system.constraints() {
             let constraint: Constraint = match named.constraint.clone() {
                 Constraint::Distance(rod) => Distance { a: shift(rod.a), b: shift(rod.b), ..rod }.into(),

@@ -3,12 +3,12 @@
 use crate::systems::{self, random::dimension};
 use proptest::prelude::*;
 use qhat::expression::{MAX_BYTES, MAX_DEPTH, MAX_INSTRUCTIONS, MAX_NAMES, MAX_NODES, check_parameter};
-use qhat::{Dimension, Expression, ExpressionError, ParticleId, Purpose, Scope};
+use qhat::{Dimension, Expression, ExpressionError, Purpose, Scope};
 
 /// Particles a, b, c and bob are 0 … 3; k and length0 are parameters; `both` is a particle and a parameter.
 fn parse_in(text: &str, purpose: Purpose, dimension: Dimension) -> Result<Expression, ExpressionError> {
     let names = ["a", "b", "c", "bob", "both"];
-    let particle = |name: &str| names.iter().position(|known| *known == name).map(ParticleId);
+    let particle = |name: &str| names.iter().position(|known| *known == name).map(crate::systems::id);
     let parameter = |name: &str| match name {
         "k" => Some(2.5),
         "length0" => Some(1.5),
@@ -150,7 +150,7 @@ fn functions_of_points_are_those_of_geometry() {
 #[test]
 fn a_rod_has_the_derivatives_of_the_distance_constraint() {
     let rod = parse("dist(a, b) - 4").unwrap();
-    assert_eq!(rod.particles(), [ParticleId(0), ParticleId(1)]);
+    assert_eq!(rod.particles(), [crate::systems::id(0), crate::systems::id(1)]);
     let qd = [0.3, -0.2, 0.5, 0.1, 0.0, 0.0, 0.0, 0.0];
     let mut J = [0.0; 4];
     let (C, C_t) = rod.jet_and_gradient(&Q2, &qd, 0.0, &mut J);
@@ -247,7 +247,7 @@ fn equal_parts_are_there_once_and_constants_are_folded() {
     }
     // Only what is used: c's y is not.
     let parsed = parse("c.x + a.y").unwrap();
-    assert_eq!(parsed.particles(), [ParticleId(2), ParticleId(0)]);
+    assert_eq!(parsed.particles(), [crate::systems::id(2), crate::systems::id(0)]);
     let mut J = [f64::NAN; 4];
     parsed.jet_and_gradient(&Q2, &[0.0; 8], 0.0, &mut J);
     assert_eq!(J, [1.0, 0.0, 0.0, 1.0]);
@@ -479,7 +479,7 @@ fn limits_hold() {
         "the expression has more than 512 numbers, names and operations"
     );
 
-    let any = |name: &str| name.strip_prefix('p').and_then(|number| number.parse().ok()).map(ParticleId);
+    let any = |name: &str| name.strip_prefix('p').and_then(|number| number.parse().ok()).map(crate::systems::id);
     let names = |count: usize| {
         let text = (0..count).map(|i| format!("p{i}.x")).collect::<Vec<_>>().join("+");
         Expression::parse(&text, &Scope::new(Purpose::Constraint, Dimension::Two, &any))

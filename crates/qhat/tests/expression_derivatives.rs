@@ -4,7 +4,7 @@
 use crate::systems::random::{Random, dimension};
 use proptest::prelude::*;
 use proptest::test_runner::{TestRng, TestRunner};
-use qhat::{Expression, ParticleId, Purpose, Scope};
+use qhat::{Expression, Purpose, Scope};
 use std::cell::Cell;
 
 /// A number.
@@ -343,7 +343,7 @@ fn along(x: &[f64], direction: &[f64], tau: f64) -> Vec<f64> {
 }
 
 fn parse(text: &str, d: usize) -> Result<Expression, qhat::ExpressionError> {
-    let particle = |name: &str| NAMES.iter().position(|known| *known == name).map(ParticleId);
+    let particle = |name: &str| NAMES.iter().position(|known| *known == name).map(crate::systems::id);
     let parameter = |name: &str| (name == "k").then_some(PARAMETER);
     let scope = Scope { parameter: &parameter, ..Scope::new(Purpose::Force, dimension(d), &particle) };
     Expression::parse(text, &scope)
@@ -401,7 +401,7 @@ fn long_ten_thousand_random_expressions_and_their_derivatives() {
         check("γ", jet.second, ridders(2, curve));
         check("C_t", C_t, ridders(1, |tau| f(at.q.clone(), at.qd.clone(), at.t + tau)));
         // J and H on all coordinates of the system, zero for particles that are not used.
-        let place = |i: usize| parsed.particles().iter().position(|p| p.0 == i / d).map(|p| p * d + i % d);
+        let place = |i: usize| parsed.particles().iter().position(|p| p.index() == i / d).map(|p| p * d + i % d);
         for i in 0..3 * d {
             let axis: Vec<f64> = (0..3 * d).map(|j| f64::from(u8::from(i == j))).collect();
             let entry = |gradient: &[f64]| place(i).map_or(0.0, |place| gradient[place]);

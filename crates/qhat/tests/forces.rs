@@ -4,9 +4,7 @@
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close, dot, norm};
 use crate::systems::random::{Random, dimension};
-use qhat::{
-    Drag, Force, Gravity, Integrator, MouseSpring, Particle, ParticleId, PointForce, Simulation, Spring, State,
-};
+use qhat::{Drag, Force, Gravity, Integrator, MouseSpring, Particle, PointForce, Simulation, Spring, State};
 use qhat::{System, evaluate, step};
 
 const STATES: usize = 40;
@@ -23,7 +21,7 @@ fn build(random: &mut Random, d: usize, force: Force) -> (System, State) {
 
 /// V at other positions, through the public door.
 fn potential(system: &System, state: &State, q: Vec<f64>) -> f64 {
-    let state = state.at(q, state.velocities().to_vec());
+    let state = state.with_motion(q, state.velocities().to_vec());
     let settings = systems::settings(Integrator::Euler, 0.01);
     Simulation::new(system.clone(), state, settings).unwrap().energy().potential
 }
@@ -60,7 +58,7 @@ fn check(make: impl Fn(&mut Random) -> Force, formula: Formula<'_>, takes_energy
             // Roundoff of a few operations on numbers below 100.
             assert_all_close("Q", &Q, &expected, 1e-12);
 
-            let at_rest = evaluate(&system, &state.at(q.to_vec(), vec![0.0; q.len()])).applied_forces;
+            let at_rest = evaluate(&system, &state.with_motion(q.to_vec(), vec![0.0; q.len()])).applied_forces;
             for k in 0..q.len() {
                 let axis: Vec<f64> = (0..q.len()).map(|j| if j == k { 1.0 } else { 0.0 }).collect();
                 assert_close("Q at rest = −∂V/∂q", at_rest[k], -slope(&system, &state, &axis), 1e-8);
@@ -99,7 +97,7 @@ fn spring_force(i: usize, x: &[&[f64]], v: &[&[f64]], damping: f64) -> Vec<f64> 
 }
 
 fn spring(damping: f64) -> Force {
-    Spring { a: ParticleId(2), b: ParticleId(0), stiffness: 13.0, damping, rest: 0.9 }.into()
+    Spring { a: crate::systems::id(2), b: crate::systems::id(0), stiffness: 13.0, damping, rest: 0.9 }.into()
 }
 
 #[test]
@@ -130,7 +128,7 @@ fn point_force_acts_on_its_particle_alone() {
     let formula = |i: usize, x: &[&[f64]], _: &[&[f64]], _: &[f64]| {
         F[..x[i].len()].iter().map(|f| if i == 1 { *f } else { 0.0 }).collect::<Vec<_>>()
     };
-    check(|_| PointForce { particle: ParticleId(1), force: F }.into(), &formula, false);
+    check(|_| PointForce { particle: crate::systems::id(1), force: F }.into(), &formula, false);
 }
 
 #[test]
@@ -140,7 +138,7 @@ fn mouse_spring_pulls_to_its_target() {
         let pull = |k: usize| if i == 1 { -6.0 * (x[1][k] - TARGET[k]) - 0.9 * v[1][k] } else { 0.0 };
         (0..x[i].len()).map(pull).collect::<Vec<_>>()
     };
-    let mouse = MouseSpring { particle: ParticleId(1), target: TARGET, stiffness: 6.0, damping: 0.9 };
+    let mouse = MouseSpring { particle: crate::systems::id(1), target: TARGET, stiffness: 6.0, damping: 0.9 };
     check(|_| mouse.clone().into(), &formula, true);
 }
 

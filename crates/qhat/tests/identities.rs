@@ -132,7 +132,7 @@ fn residual_decays_as_the_closed_form_says() {
     let mut builder = System::builder(qhat::Dimension::Two);
     let a = builder.particle(qhat::Particle::at("a", [0.0, 0.0]));
     let b = builder.particle(qhat::Particle::at("b", [1.1, 0.0]).with_mass(3.0));
-    builder.constraint("rod", qhat::Distance::new(a, b, 1.0)).feedback(systems::critical(5.0));
+    builder.with_constraint("rod", qhat::Distance::new(a, b, 1.0)).feedback(systems::critical(5.0));
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Rk4, 1e-3)).unwrap();
     for frame in 1..=1000 {

@@ -3,9 +3,7 @@
 
 use crate::systems::open_chains::open_chains;
 use crate::systems::{self, FRAME};
-use qhat::{
-    Dimension, Distance, Integrator, Particle, ParticleId, Settings, Simulation, Spring, StepError, System, Warning,
-};
+use qhat::{Dimension, Distance, Integrator, Particle, Settings, Simulation, Spring, StepError, System, Warning};
 
 #[test]
 fn nothing_to_move_and_one_free_particle() {
@@ -70,7 +68,7 @@ fn long_integrators_follow_one_another() {
             let settings = systems::settings(integrator, FRAME * (1.0 + 0.37 * (k % 5) as f64));
             simulation.set_settings(settings).unwrap();
             match k % 7 {
-                1 => simulation.grab(ParticleId(1), [0.5; 3]).unwrap(),
+                1 => simulation.grab(crate::systems::id(1), [0.5; 3]).unwrap(),
                 3 => simulation.set_gravity([0.0, -1.0, 0.5]).unwrap(),
                 4 => simulation.set_drag(0.3).unwrap(),
                 5 => simulation.release(),
@@ -115,10 +113,10 @@ fn long_springs_without_measure_do_not_end_a_run() {
                 if is_general {
                     let d = builder.particle(Particle::at("d", [1.2, 0.4]));
                     builder
-                        .constraint("cd", Distance::new(c, d, 0.5))
+                        .with_constraint("cd", Distance::new(c, d, 0.5))
                         .constraint("db", Distance::new(d, b, 0.4472135954999579));
                 }
-                builder.force(Spring { a, b, stiffness, damping: 0.0, rest: 0.99 }).force(systems::gravity());
+                builder.with_force(Spring { a, b, stiffness, damping: 0.0, rest: 0.99 }).force(systems::gravity());
                 builder.build().unwrap()
             };
             let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Auto, FRAME)).unwrap();

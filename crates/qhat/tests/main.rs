@@ -6,6 +6,7 @@
 
 #![allow(non_snake_case, reason = "the letters of the equations keep their case")]
 
+mod api;
 mod auto;
 mod chains_against_general;
 mod columns;
@@ -16,6 +17,7 @@ mod custom;
 mod degenerate;
 mod docs;
 mod equivalence;
+mod examples;
 mod expression;
 mod expression_derivatives;
 mod forces;
@@ -29,6 +31,7 @@ mod one_step_by_hand;
 mod order;
 mod reactions;
 mod refused;
+mod serde;
 mod snapshot;
 mod softness;
 mod step_size;

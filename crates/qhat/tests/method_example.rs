@@ -4,6 +4,7 @@
 
 #![allow(non_snake_case, reason = "the letters of the method keep their case")]
 
+use crate::systems;
 use qhat::{
     Body, Dimension, Distance, DistanceForm, Drag, Expression, ExpressionConstraint, Feedback, Gravity, Integrator,
     Limits, Nail, Particle, ParticleId, Purpose, Scope, Settings, Simulation, State, System, SystemBuilder, Terms,
@@ -23,8 +24,13 @@ const R: f64 = std::f64::consts::SQRT_2;
 /// One step [s], so long that the difference between integrators shows in the first digits.
 const H: f64 = 0.1;
 
-const PIVOT: ParticleId = ParticleId(0);
-const BOB: ParticleId = ParticleId(1);
+fn pivot_id() -> ParticleId {
+    systems::id(0)
+}
+
+fn bob_id() -> ParticleId {
+    systems::id(1)
+}
 
 /// Pivot, bob and gravity; what holds the bob is added.
 fn hung(hold: impl FnOnce(&mut SystemBuilder)) -> (System, State) {
@@ -38,7 +44,7 @@ fn hung(hold: impl FnOnce(&mut SystemBuilder)) -> (System, State) {
 
 fn pendulum() -> (System, State) {
     hung(|builder| {
-        builder.constraint("rod", Distance::new(PIVOT, BOB, R));
+        builder.constraint("rod", Distance::new(pivot_id(), bob_id(), R));
     })
 }
 
@@ -48,7 +54,7 @@ fn bob(vector: &[f64]) -> Vec<f64> {
 }
 
 fn at(state: &State, q: [f64; 2], qd: [f64; 2]) -> State {
-    state.at(vec![0.0, 0.0, q[0], q[1]], vec![0.0, 0.0, qd[0], qd[1]])
+    state.with_motion(vec![0.0, 0.0, q[0], q[1]], vec![0.0, 0.0, qd[0], qd[1]])
 }
 
 /// One frame of `H` with an integrator.
@@ -125,10 +131,10 @@ fn rate_of_rate(terms: &Terms) -> f64 {
 }
 
 fn expression(builder: &SystemBuilder, positions: &[f64]) -> (Expression, ExpressionConstraint) {
-    assert_eq!((builder.name(PIVOT), builder.name(BOB)), ("pivot", "bob"));
+    assert_eq!((builder.name(pivot_id()), builder.name(bob_id())), ("pivot", "bob"));
     let particle = |name: &str| match name {
-        "pivot" => Some(PIVOT),
-        "bob" => Some(BOB),
+        "pivot" => Some(pivot_id()),
+        "bob" => Some(bob_id()),
         _ => None,
     };
     let scope = Scope::new(Purpose::Constraint, Dimension::Two, &particle);
@@ -142,7 +148,7 @@ fn constraints() -> Vec<Line> {
     let (system, state) = pendulum();
     let terms = evaluate(&system, &state);
     let (squared, _) = hung(|builder| {
-        builder.constraint("rod", Distance { form: DistanceForm::Squared, ..Distance::new(PIVOT, BOB, R) });
+        builder.constraint("rod", Distance { form: DistanceForm::Squared, ..Distance::new(pivot_id(), bob_id(), R) });
     });
     let squared = evaluate(&squared, &state);
     let mut hessian = Vec::new();
@@ -170,7 +176,7 @@ fn constraints() -> Vec<Line> {
 fn multipliers() -> Vec<Line> {
     let fed = Feedback { ks: 100.0, kd: 20.0, ..Feedback::NONE };
     let (system, state) = hung(|builder| {
-        builder.constraint("rod", Distance::new(PIVOT, BOB, R)).feedback(fed);
+        builder.with_constraint("rod", Distance::new(pivot_id(), bob_id(), R)).feedback(fed);
     });
     let stepped = stepped(&pendulum().0, &state, Integrator::Euler);
     let off = at(
@@ -191,7 +197,9 @@ fn multipliers() -> Vec<Line> {
         ("C̈", vec![rate_of_rate(&terms)]),
     ]);
     let (twice, _) = hung(|builder| {
-        builder.constraint("rod", Distance::new(PIVOT, BOB, R)).constraint("twin", Distance::new(PIVOT, BOB, R));
+        builder
+            .with_constraint("rod", Distance::new(pivot_id(), bob_id(), R))
+            .constraint("twin", Distance::new(pivot_id(), bob_id(), R));
     });
     let twice = evaluate(&twice, &state);
     lines.extend([
@@ -202,7 +210,7 @@ fn multipliers() -> Vec<Line> {
     ]);
     let (soft, _) = hung(|builder| {
         let drag = Feedback { diagonal_drag: 0.5, ..Feedback::NONE };
-        builder.constraint("rod", Distance::new(PIVOT, BOB, R)).feedback(drag);
+        builder.with_constraint("rod", Distance::new(pivot_id(), bob_id(), R)).feedback(drag);
     });
     let soft = evaluate(&soft, &state);
     lines.extend([("λ", soft.multipliers.clone()), ("C̈", vec![rate_of_rate(&soft)])]);
@@ -236,7 +244,7 @@ fn integrators() -> Vec<Line> {
     assert_eq!(bdf2.step().unwrap().substeps, 1);
     lines.extend(ended(&bdf2));
     let (soft, _) = hung(|builder| {
-        builder.constraint("rod", Distance::new(PIVOT, BOB, R).with_compliance(0.001, 0.0));
+        builder.constraint("rod", Distance::new(pivot_id(), bob_id(), R).with_compliance(0.001, 0.0));
     });
     let mut soft = stepped(&soft, &state, Integrator::Implicit);
     lines.extend(ended(&soft));
@@ -267,8 +275,8 @@ fn chain(form: DistanceForm) -> Terms {
     let (system, state) = hung(|builder| {
         let second = Particle::at("second", [1.0, -2.0]).with_mass(2.0).with_velocity([1.0, 1.0]);
         let second = builder.particle(second);
-        builder.constraint("rod", Distance { form, ..Distance::new(BOB, PIVOT, R) });
-        builder.constraint("below", Distance { form, ..Distance::new(second, BOB, 1.0) });
+        builder.constraint("rod", Distance { form, ..Distance::new(bob_id(), pivot_id(), R) });
+        builder.constraint("below", Distance { form, ..Distance::new(second, bob_id(), 1.0) });
     });
     evaluate(&system, &state)
 }
@@ -325,11 +333,11 @@ fn bodies() -> Vec<Line> {
         builder.particle(Particle::at(format!("p{k}"), [x[0], x[1]]).with_mass(*m).with_velocity([v[0], v[1]]));
     }
     for (k, &[a, b]) in body.rods.iter().enumerate() {
-        builder.constraint(format!("rod{k}"), Distance::new(ParticleId(a), ParticleId(b), body.length(k)));
+        builder.constraint(format!("rod{k}"), Distance::new(systems::id(a), systems::id(b), body.length(k)));
     }
     let near = body.points.iter().position(|x| x[0].abs() + x[1].abs() < 1e-12).unwrap();
     let far = body.points.iter().position(|x| (x[0] - end[0]).abs() < 1e-12).unwrap();
-    builder.constraint("nail", Nail::new(ParticleId(near), [0.0; 3]));
+    builder.constraint("nail", Nail::new(systems::id(near), [0.0; 3]));
     builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
@@ -348,7 +356,7 @@ fn bodies() -> Vec<Line> {
 fn contacts() -> Vec<Line> {
     let rope = |restitution: f64| {
         hung(|builder| {
-            builder.constraint("rope", Limits { restitution, ..Limits::rope(PIVOT, BOB, R) });
+            builder.constraint("rope", Limits { restitution, ..Limits::rope(pivot_id(), bob_id(), R) });
         })
     };
     let (system, state) = rope(0.0);

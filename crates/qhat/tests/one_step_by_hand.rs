@@ -50,7 +50,7 @@ fn symplectic_euler_step() {
 fn rk4_step() {
     for (system, state) in webs() {
         let at = |q: Vec<f64>, v: Vec<f64>| {
-            let slope = evaluate(&system, &state.at(q, v.clone())).accelerations;
+            let slope = evaluate(&system, &state.with_motion(q, v.clone())).accelerations;
             (v, slope)
         };
         let (q, v) = (state.positions(), state.velocities());

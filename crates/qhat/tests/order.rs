@@ -16,8 +16,10 @@ fn system() -> (System, State) {
     let elbow = builder.particle(Particle::at("elbow", [0.8, -0.6]).with_velocity([0.6, 0.8]));
     let tip = builder.particle(Particle::at("tip", [1.6, -1.2]).with_mass(0.4).with_velocity([1.2, 1.6]));
     let anchor = builder.particle(Particle::at("anchor", [1.0, 1.0]).fixed());
-    builder.constraint("upper", Distance::new(pivot, elbow, 1.0)).constraint("lower", Distance::new(elbow, tip, 1.0));
-    builder.force(systems::gravity()).force(Drag { coefficient: 0.3 });
+    builder
+        .with_constraint("upper", Distance::new(pivot, elbow, 1.0))
+        .constraint("lower", Distance::new(elbow, tip, 1.0));
+    builder.with_force(systems::gravity()).force(Drag { coefficient: 0.3 });
     builder.force(Spring { a: tip, b: anchor, stiffness: 4.0, damping: 0.5, rest: 0.5 });
     builder.build().unwrap()
 }
@@ -149,7 +151,7 @@ fn rattle_is_reversible() {
             assert_eq!(report.substeps, 1);
         }
         let turned = state.velocities().iter().map(|v| -v).collect();
-        state = state.at(state.positions().to_vec(), turned);
+        state = state.with_motion(state.positions().to_vec(), turned);
     }
     // Roundoff of 1000 steps, multiplied by the motion's own sensitivity (about 1e2 in a second).
     let error = difference(state.positions(), start.positions());

@@ -3,9 +3,7 @@
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close, dot};
 use crate::systems::random::{Random, web};
-use qhat::{
-    Dimension, Distance, DistanceForm, Nail, NailForm, Particle, ParticleId, PointForce, Settings, State, System,
-};
+use qhat::{Dimension, Distance, DistanceForm, Nail, NailForm, Particle, PointForce, Settings, State, System};
 use qhat::{Terms, Workspace, evaluate, project};
 
 /// Puts a random state onto C = 0 and Ċ = 0.
@@ -42,7 +40,7 @@ fn constraint_force_does_no_work_on_legal_motion() {
         let v = random.numbers(state.velocities().len(), -1.0, 1.0);
         let d = system.dimension();
         let v = v.iter().enumerate().map(|(k, v)| if system.inverse_masses()[k / d] == 0.0 { 0.0 } else { *v });
-        state = state.at(state.positions().to_vec(), v.collect());
+        state = state.with_motion(state.positions().to_vec(), v.collect());
         legal(&system, &mut state);
         let terms = evaluate(&system, &state);
         assert_close("Q̂·q̇", dot(&terms.constraint_forces, &terms.velocities), 0.0, 1e-12 * size(&terms));
@@ -55,7 +53,7 @@ fn internal_forces_change_no_momentum() {
     let mut random = Random::new(4);
     for _ in 0..20 {
         let (system, start) = systems::free_structure();
-        let state = start.at(random.numbers(12, -1.0, 1.0), random.numbers(12, -1.0, 1.0));
+        let state = start.with_motion(random.numbers(12, -1.0, 1.0), random.numbers(12, -1.0, 1.0));
         let terms = evaluate(&system, &state);
         let change: Vec<f64> = (0..12).map(|k| system.masses()[k / 3] * terms.accelerations[k]).collect();
         let size: f64 = change.iter().map(|f| f.abs()).sum();
@@ -73,7 +71,7 @@ fn hanging(form: DistanceForm) -> Terms {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.5, 1.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.5, -1.5]).with_mass(2.0));
-    builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
+    builder.with_constraint("rod", Distance { form, ..Distance::new(pivot, bob, 2.5) }).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     evaluate(&system, &state)
 }
@@ -105,7 +103,7 @@ fn a_strut_under_load_has_negative_tension() {
     let mut builder = System::builder(Dimension::Three);
     let foot = builder.particle(Particle::at("foot", [0.0, 0.0, 0.0]).fixed());
     let load = builder.particle(Particle::at("load", [0.0, 2.0, 0.0]).with_mass(2.0));
-    builder.constraint("strut", Distance::new(load, foot, 2.0)).force(systems::gravity());
+    builder.with_constraint("strut", Distance::new(load, foot, 2.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     assert_close("tension", evaluate(&system, &state).tension[0], -MG, 1e-14 * MG);
 }
@@ -114,7 +112,7 @@ fn a_strut_under_load_has_negative_tension() {
 fn lambda_of_a_nail_is_its_force_on_the_particle() {
     let mut builder = System::builder(Dimension::Three);
     let it = builder.particle(Particle::at("it", [1.0, 2.0, 3.0]).with_mass(2.0));
-    builder.constraint("nail", Nail::new(it, [1.0, 2.0, 3.0])).force(systems::gravity());
+    builder.with_constraint("nail", Nail::new(it, [1.0, 2.0, 3.0])).force(systems::gravity());
     builder.force(PointForce { particle: it, force: [5.0, 1.0, -4.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
@@ -130,8 +128,10 @@ fn lambda_of_a_nail_is_its_force_on_the_particle() {
 fn scalar_nail_carries_along_its_gradient_only() {
     let mut builder = System::builder(Dimension::Two);
     let it = builder.particle(Particle::at("it", [0.0, -0.1]).with_mass(2.0));
-    builder.constraint("nail", Nail { particle: it, at: [0.0; 3], form: NailForm::Scalar }).force(systems::gravity());
-    builder.force(PointForce { particle: ParticleId(0), force: [3.0, 0.0, 0.0] });
+    builder
+        .with_constraint("nail", Nail { particle: it, at: [0.0; 3], form: NailForm::Scalar })
+        .force(systems::gravity());
+    builder.force(PointForce { particle: crate::systems::id(0), force: [3.0, 0.0, 0.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
     // J = (0, −0.2), so λ = −mg/0.2; sideways nothing holds.

@@ -3,8 +3,10 @@
 
 use crate::systems;
 use qhat::{
-    BuildError, Dimension, Distance, Drag, Feedback, Gravity, Integrator, MouseSpring, Nail, Particle, ParticleId,
-    PointForce, Settings, SettingsError, Simulation, Spring, StepError, System, SystemBuilder, Workspace, step,
+    BodyError, BuildError, ConstraintError, Curve, Dimension, Distance, Drag, ExpressionError, Feedback, ForceError,
+    GeometryError, Gravity, Integrator, MouseSpring, Nail, ParameterError, Particle, ParticleError, ParticleId,
+    PointForce, Settings, SettingsError, Simulation, Spring, StepError, System, SystemBuilder, ValueError, Workspace,
+    step,
 };
 
 fn bits(numbers: &[f64]) -> Vec<u64> {
@@ -24,9 +26,10 @@ fn message(change: impl FnOnce(&mut SystemBuilder, ParticleId, ParticleId)) -> S
 fn particles_that_cannot_be() {
     let refuse = |particle: Particle| message(|builder, _, _| _ = builder.particle(particle));
     assert_eq!(refuse(Particle::at("a", [2.0, 0.0])), "particle `a`: the name is used twice");
-    let wrong = "particle `c`: position and velocity must have 2 components";
-    assert_eq!(refuse(Particle::at("c", [2.0, 0.0, 1.0])), wrong);
-    assert_eq!(refuse(Particle::at("c", [2.0, 0.0]).with_velocity([1.0])), wrong);
+    let space = Particle::at("c", [2.0, 0.0, 1.0]);
+    assert_eq!(refuse(space), "particle `c`: the position must have 2 components, but has 3");
+    let line = Particle::at("c", [2.0, 0.0]).with_velocity([1.0]);
+    assert_eq!(refuse(line), "particle `c`: the velocity must have 2 components, but has 1");
     let finite = "particle `c`: position and velocity must be finite numbers";
     assert_eq!(refuse(Particle::at("c", [f64::NAN, 0.0])), finite);
     assert_eq!(refuse(Particle::at("c", [0.0, 0.0]).with_velocity([0.0, f64::INFINITY])), finite);
@@ -48,18 +51,73 @@ fn constraints_that_cannot_be() {
     }
     let got = message(|builder, a, _| _ = builder.constraint("rod", Distance::new(a, a, 1.0)));
     assert_eq!(got, "constraint `rod`: a distance constraint needs two different particles");
-    let got = message(|builder, a, _| _ = builder.constraint("rod", Distance::new(a, ParticleId(7), 1.0)));
+    let got = message(|builder, a, _| _ = builder.constraint("rod", Distance::new(a, systems::id(7), 1.0)));
     assert_eq!(got, "constraint `rod`: there is no particle number 7");
     let got = message(|builder, a, _| _ = builder.constraint("nail", Nail::new(a, [f64::NAN, 0.0, 0.0])));
     assert_eq!(got, "constraint `nail`: the point of a nail must be a finite number, not NaN");
+    let got = message(|builder, a, b| {
+        builder.with_constraint("rod", Distance::new(a, b, 1.0)).constraint("rod", Distance::new(b, a, 2.0));
+    });
+    assert_eq!(got, "constraint `rod`: the name is used twice");
+}
+
+/// The reason is a value that code can tell apart, and the source of the error.
+#[test]
+fn a_refusal_has_a_typed_reason() {
+    let mut builder = System::builder(Dimension::Two);
+    let a = builder.particle(Particle::at("a", [0.0, 0.0]));
+    builder.constraint("rod", Distance::new(a, a, 1.0));
+    let refused = builder.build().unwrap_err();
+    let Some(reason) = std::error::Error::source(&refused) else { panic!("{refused:?} has no source") };
+    let reason = reason.downcast_ref::<ConstraintError>();
+    assert_eq!(reason, Some(&ConstraintError::SameEnds { what: "a distance constraint" }));
+    let refused = Curve::polyline(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], 0.1, false).unwrap_err();
+    assert_eq!(refused, GeometryError::WireNeighbours { points: [1, 2] });
+}
+
+fn is_error<E: std::error::Error + Send + Sync + 'static>() {}
+
+#[test]
+fn every_error_goes_through_a_question_mark_into_any_other() {
+    is_error::<BuildError>();
+    is_error::<ParticleError>();
+    is_error::<ConstraintError>();
+    is_error::<ForceError>();
+    is_error::<GeometryError>();
+    is_error::<ValueError>();
+    is_error::<ExpressionError>();
+    is_error::<ParameterError>();
+    is_error::<BodyError>();
+    is_error::<SettingsError>();
+    is_error::<StepError>();
+}
+
+#[test]
+fn the_hand_says_what_it_cannot_do() {
+    let (system, state) = systems::pendulum(1.0);
+    let mut simulation = Simulation::new(system, state, Settings::default()).unwrap();
+    let find = |name| simulation.system().particle(name).unwrap();
+    let (pivot, bob) = (find("pivot"), find("bob"));
+    assert_eq!(simulation.grab(pivot, [0.0; 2]), Err(ForceError::Fixed { particle: "pivot".into() }));
+    assert_eq!(simulation.drag_to([0.0; 2]), Err(ForceError::NothingGrabbed));
+    assert_eq!(simulation.grab(systems::id(7), [0.0; 2]), Err(ForceError::NoParticle { particle: 7 }));
+    let what = "the target of the mouse spring";
+    let infinite = ForceError::Value(ValueError::NotFinite { what, value: f64::INFINITY });
+    assert_eq!(simulation.grab(bob, [f64::INFINITY, 0.0]), Err(infinite));
+    assert_eq!(simulation.mouse(), None);
+    assert_eq!(simulation.grab(bob, [1.0, 2.0]), Ok(()));
+    assert_eq!(simulation.drag_to([3.0, 4.0, 0.0]), Ok(()));
+    assert_eq!(simulation.mouse().map(|mouse| (mouse.particle, mouse.target)), Some((bob, [3.0, 4.0, 0.0])));
+    simulation.release();
+    assert_eq!(simulation.mouse(), None);
 }
 
 #[test]
 fn forces_that_cannot_be() {
     let refuse = |force: qhat::Force| {
-        message(|builder, _, _| drop(builder.force(Drag { coefficient: 1.0 }).force(force).clone()))
+        message(|builder, _, _| drop(builder.with_force(Drag { coefficient: 1.0 }).with_force(force).clone()))
     };
-    let (a, b) = (ParticleId(0), ParticleId(1));
+    let (a, b) = (systems::id(0), systems::id(1));
     let spring = Spring { a, b, stiffness: 1.0, damping: 1.0, rest: 1.0 };
     let mouse = MouseSpring { particle: a, target: [0.0; 3], stiffness: 1.0, damping: 1.0 };
     let cases: [(qhat::Force, &str); 11] = [
@@ -72,7 +130,7 @@ fn forces_that_cannot_be() {
         (Spring { damping: -2.0, ..spring.clone() }.into(), "the damping of a spring must not be negative, but is -2"),
         (Spring { rest: -2.0, ..spring.clone() }.into(), "the rest length of a spring must not be negative, but is -2"),
         (Spring { b: a, ..spring.clone() }.into(), "a spring needs two different particles"),
-        (Spring { b: ParticleId(9), ..spring }.into(), "there is no particle number 9"),
+        (Spring { b: systems::id(9), ..spring }.into(), "there is no particle number 9"),
         (
             PointForce { particle: a, force: [f64::INFINITY; 3] }.into(),
             "a point force must be a finite number, not inf",
@@ -170,8 +228,8 @@ fn a_start_that_is_not_finite() {
         for integrator in Integrator::ALL {
             let (system, start) = systems::pendulum(1.0);
             for state in [
-                start.at(vec![0.0, 0.0, bad, 0.0], vec![0.0; 4]),
-                start.at(start.positions().to_vec(), vec![0.0, 0.0, 0.0, bad]),
+                start.with_motion(vec![0.0, 0.0, bad, 0.0], vec![0.0; 4]),
+                start.with_motion(start.positions().to_vec(), vec![0.0, 0.0, 0.0, bad]),
             ] {
                 let settings = systems::settings(integrator, 0.01);
                 let refused = Simulation::new(system.clone(), state.clone(), settings).and_then(|mut s| s.step());

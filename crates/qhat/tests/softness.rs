@@ -108,7 +108,7 @@ fn terms(is_double: bool, feedback: Feedback) -> Terms {
     let (system, state) = if is_double { systems::double_pendulum() } else { systems::pendulum(0.7) };
     let stretched = state.positions().iter().map(|x| 1.01 * x).collect();
     let turning = state.positions().iter().enumerate().map(|(k, x)| if k < 2 { 0.0 } else { 0.3 - 0.7 * x }).collect();
-    let state = state.at(stretched, turning);
+    let state = state.with_motion(stretched, turning);
     let settings = systems::settings(Integrator::Euler, 0.01);
     let mut simulation = Simulation::new(system, state, settings).unwrap();
     simulation.set_feedback(feedback).unwrap();

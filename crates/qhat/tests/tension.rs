@@ -15,7 +15,7 @@ fn after_a_frame(at: [f64; 2], limits: impl Fn(ParticleId, ParticleId) -> Limits
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", at).with_mass(MASS));
-    builder.constraint("link", limits(pivot, bob)).force(gravity());
+    builder.with_constraint("link", limits(pivot, bob)).force(gravity());
     start(builder)
 }
 
@@ -46,7 +46,7 @@ fn a_rope_that_starts_taut_pulls_from_the_start() {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(MASS));
-    builder.constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
+    builder.with_constraint("rope", Limits::rope(pivot, bob, 1.0)).force(gravity());
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, settings(Integrator::Dop853, 0.01)).unwrap();
     assert_close("tension", simulation.tension()[0], MASS * G, 1e-12 * MASS * G);
@@ -62,7 +62,9 @@ fn what_breaks_is_slack_from_then_on() {
         let mut builder = System::builder(Dimension::Two);
         let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [1.0, 0.0]).with_mass(MASS));
-        builder.constraint("link", Limits { breaks_at: Some(2.0 * MASS * G), ..make(pivot, bob) }).force(gravity());
+        builder
+            .with_constraint("link", Limits { breaks_at: Some(2.0 * MASS * G), ..make(pivot, bob) })
+            .force(gravity());
         let mut simulation = start(builder);
         let mut broke = None;
         for _ in 0..100 {
@@ -110,7 +112,7 @@ fn links_are_in_the_order_of_tension() {
     builder.constraint("rope", Limits::between(pivot, hung[0], 0.5, 1.0));
     builder.constraint("nail", Nail::new(pivot, [0.0; 3]));
     builder.constraint("rod", Distance::new(pivot, hung[1], 2.0));
-    builder.constraint("strut", Limits::strut(hung[1], hung[2], 1.0)).force(gravity());
+    builder.with_constraint("strut", Limits::strut(hung[1], hung[2], 1.0)).force(gravity());
     let mut simulation = start(builder);
     let terms = simulation.terms();
     let links: Vec<_> = simulation.system().links().collect();

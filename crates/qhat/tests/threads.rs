@@ -1,7 +1,7 @@
 //! The same bits on any number of threads.
 
 use crate::systems;
-use qhat::{Integrator, Settings, Simulation, State, StepReport, step_all};
+use qhat::{Integrator, Settings, Simulation, State, StepReport, run_all, step_all};
 use rayon::ThreadPoolBuilder;
 
 const THREADS: [usize; 4] = [1, 2, 8, 32];
@@ -52,5 +52,19 @@ fn many_systems_have_the_same_bits_on_any_number_of_threads() {
     for threads in THREADS {
         let states: Vec<State> = run(threads, many()).into_iter().map(|(state, _)| state).collect();
         assert!(states == one_by_one, "{threads} threads");
+    }
+    // All frames of one after the other, in place of a frame of each.
+    for threads in THREADS {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut simulations = many();
+        let seen =
+            pool.install(|| run_all(&mut simulations, 3, |place, simulation, _| (place, simulation.state().clone())));
+        let last: Vec<State> = simulations.iter().map(|simulation| simulation.state().clone()).collect();
+        assert!(last == one_by_one, "{threads} threads");
+        for (place, seen) in seen.into_iter().enumerate() {
+            let seen = seen.unwrap();
+            assert_eq!((seen.len(), seen[2].0), (3, place));
+            assert!(seen[2].1 == one_by_one[place]);
+        }
     }
 }

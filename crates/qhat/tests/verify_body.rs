@@ -27,7 +27,7 @@ fn assert_moments(what: &str, body: &Body, mass: f64, centre: [f64; 3], S: [[f64
     let found = moments(&body.points, &body.masses);
     assert_close(what, found.0, mass, ROUNDING);
     assert_all_close(what, &found.1, &centre, ROUNDING);
-    assert_all_close(what, &body.centre(), &centre, ROUNDING);
+    assert_all_close(what, &body.center(), &centre, ROUNDING);
     assert_all_close(what, found.2.as_flattened(), S.as_flattened(), ROUNDING);
     assert!(body.masses.iter().all(|&m| m > 0.0), "{what}");
 }
@@ -182,7 +182,7 @@ fn long_compound_pendulum_swings_as_one_of_two_thirds_its_length() {
         for (dimension, bar) in [(Dimension::Two, in_plane), (Dimension::Three, in_space)] {
             let mut builder = qhat::System::builder(dimension);
             let ids = add(&mut builder, dimension.number(), &bar, [0.0; 3], [0.0; 3]);
-            builder.constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
+            builder.with_constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
             let (system, state) = builder.build().unwrap();
             let simulation = Simulation::new(system, state, accurate()).unwrap();
             // The tolerance of a substep: an error of order 8 that does not add up in one direction. Measured: 5e-12.

@@ -93,7 +93,9 @@ fn a_mass_on_two_ropes() {
     let left = builder.particle(Particle::at("left", [-libm::cos(alpha), libm::sin(alpha)]).fixed());
     let right = builder.particle(Particle::at("right", [2.0 * libm::cos(beta), 2.0 * libm::sin(beta)]).fixed());
     let load = builder.particle(Particle::at("load", [0.0, 0.0]).with_mass(mass));
-    builder.constraint("left", Distance::new(left, load, 1.0)).constraint("right", Distance::new(load, right, 2.0));
+    builder
+        .with_constraint("left", Distance::new(left, load, 1.0))
+        .constraint("right", Distance::new(load, right, 2.0));
     builder.force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let tension = evaluate(&system, &state).tension;

@@ -2,7 +2,7 @@
 
 use crate::systems;
 use crate::systems::dense::assert_close;
-use qhat::{Feedback, Gravity, Integrator, ParticleId, Settings, Simulation, State, System};
+use qhat::{Feedback, Gravity, Integrator, Settings, Simulation, State, System};
 
 fn tight(tolerance: f64) -> Settings {
     Settings { tolerance, constraint_tolerance: 1e-13, ..systems::settings(Integrator::Rattle, 1.0 / 60.0) }
@@ -181,7 +181,7 @@ fn mouse_spring_work_is_booked() {
     let mut simulation = Simulation::new(system, state, tight(1e-6)).unwrap();
     let start = simulation.energy().balance();
     assert_eq!(simulation.state().work().external, 0.0);
-    let tip = ParticleId(2);
+    let tip = crate::systems::id(2);
     simulation.grab(tip, [1.6, 1.8, 0.0]).unwrap();
     // Taking hold one metre away stretches the spring: ½ ks · 1².
     let stiffness = simulation.mouse().unwrap().stiffness;

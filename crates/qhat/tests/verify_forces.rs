@@ -28,7 +28,7 @@ fn with_every_force(random: &mut Random, d: usize) -> (System, State) {
         let v = random.numbers(d, -0.5, 0.5);
         builder.particle(if i == 0 { particle.fixed() } else { particle.with_velocity(v) });
     }
-    let p: Vec<ParticleId> = (0..7).map(ParticleId).collect();
+    let p: Vec<ParticleId> = (0..7).map(systems::id).collect();
     for (a, b) in [(0, 1), (1, 2), (2, 3), (1, 4)] {
         let r = points[a].iter().zip(&points[b]).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
         builder.constraint(format!("{a}-{b}"), Distance::new(p[a], p[b], r));
@@ -254,7 +254,7 @@ fn a_piston_settles_on_its_gas() {
         }
         let facets = [[a, b], [b, d], [d, c], [c, a]].map(Facet::Edge).to_vec();
         let gas = Gas::new(facets, 1000.0, 1.4, Dimension::Two, &[0.0, 0.0, 1.0, 0.0, 0.0, 0.01, 1.0, 0.01]);
-        builder.force(gas).force(systems::gravity()).force(qhat::Drag { coefficient: 2.0 });
+        builder.with_force(gas).with_force(systems::gravity()).force(qhat::Drag { coefficient: 2.0 });
         let mut simulation = simulation(builder.build().unwrap(), integrator, 1e-6, 0.02);
         run(&mut simulation, 1500);
         // What is left of the swing, which fades as e^(−2t).
@@ -265,7 +265,7 @@ fn a_piston_settles_on_its_gas() {
 
 #[test]
 fn forces_that_cannot_be() {
-    let (a, b, c) = (ParticleId(0), ParticleId(1), ParticleId(2));
+    let (a, b, c) = (systems::id(0), systems::id(1), systems::id(2));
     let torsion = TorsionSpring { a, b, c, stiffness: 1.0, damping: 1.0, angle: 1.0 };
     let actuator = Actuator { a, b, push: 1.0, amplitude: 1.0, angular_frequency: 1.0, phase: 0.0 };
     let cubic = CubicSpring { a, b, stiffness: 1.0, cubic: 1.0, damping: 0.0, rest: 1.0 };

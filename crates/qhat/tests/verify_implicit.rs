@@ -136,7 +136,9 @@ fn a_column_buckles_to_the_side_it_is_pushed() {
         let foot = builder.particle(Particle::at("foot", [0.0, 0.0]).fixed());
         let knee = builder.particle(Particle::at("knee", [0.0, 0.5]).with_mass(0.5).with_velocity([push, 0.0]));
         let load = builder.particle(Particle::at("load", [0.0, 1.0]));
-        builder.constraint("shin", Distance::new(foot, knee, 0.5)).constraint("thigh", Distance::new(knee, load, 0.5));
+        builder
+            .with_constraint("shin", Distance::new(foot, knee, 0.5))
+            .constraint("thigh", Distance::new(knee, load, 0.5));
         builder.force(systems::gravity());
         for integrator in IMPLICIT {
             let mut simulation = start(builder.clone().build().unwrap(), integrator, FRAME);
@@ -287,7 +289,7 @@ fn a_stiff_spring_does_not_bound_the_step() {
         let b = builder.particle(Particle::at("b", [1.0, 0.0]).with_mass(1e-3));
         builder.constraint("rod", Distance::new(pin, a, 0.5));
         builder.force(Spring { a, b, stiffness: 1e9, damping: 0.0, rest: 0.5 });
-        builder.force(systems::gravity()).force(Drag { coefficient: 1e-4 });
+        builder.with_force(systems::gravity()).force(Drag { coefficient: 1e-4 });
         let mut simulation = start(builder.build().unwrap(), integrator, FRAME);
         for _ in 0..600 {
             let report = simulation.step().unwrap();

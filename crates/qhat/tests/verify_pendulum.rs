@@ -61,7 +61,7 @@ fn conical_pendulum_keeps_its_height() {
     let speed = (G * sine * sine / cosine).sqrt();
     let bob = qhat::Particle::at("bob", [sine, -cosine, 0.0]).with_velocity([0.0, 0.0, speed]).with_mass(2.0);
     let bob = builder.particle(bob);
-    builder.constraint("rod", qhat::Distance::new(pivot, bob, 1.0)).force(systems::gravity());
+    builder.with_constraint("rod", qhat::Distance::new(pivot, bob, 1.0)).force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Rattle, 1e-3)).unwrap();
     for _ in 0..2000 {

@@ -60,7 +60,7 @@ fn long_frequency_and_damping_of_a_mass_on_a_spring() {
 #[test]
 fn a_spring_at_rest_length_is_at_rest() {
     let (system, state) = oscillator(0.5);
-    let state = state.at(vec![0.0, 0.0, REST, 0.0], vec![0.0; 4]);
+    let state = state.with_motion(vec![0.0, 0.0, REST, 0.0], vec![0.0; 4]);
     for integrator in Integrator::ALL {
         let mut simulation =
             Simulation::new(system.clone(), state.clone(), systems::settings(integrator, 0.01)).unwrap();
@@ -76,7 +76,7 @@ fn spring_sags_by_weight_over_stiffness() {
     let top = builder.particle(Particle::at("top", [0.0; 3]).fixed());
     let mass = builder.particle(Particle::at("mass", [0.0, -REST, 0.0]).with_mass(MASS));
     builder
-        .force(Spring { a: mass, b: top, stiffness: STIFFNESS, damping: 20.0, rest: REST })
+        .with_force(Spring { a: mass, b: top, stiffness: STIFFNESS, damping: 20.0, rest: REST })
         .force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Rattle, 1.0 / 60.0)).unwrap();
@@ -152,7 +152,7 @@ fn free_flight_is_a_parabola() {
         let mut builder = System::builder(Dimension::Three);
         let velocity = [3.0, 5.0, -1.0];
         let it = builder.particle(Particle::at("it", [0.0; 3]).with_velocity(velocity).with_mass(MASS));
-        builder.force(systems::gravity()).force(PointForce { particle: it, force: [1.0, 0.0, -6.0] });
+        builder.with_force(systems::gravity()).force(PointForce { particle: it, force: [1.0, 0.0, -6.0] });
         let (system, state) = builder.build().unwrap();
         let mut simulation = Simulation::new(system, state, systems::settings(integrator, 0.01)).unwrap();
         for _ in 0..200 {

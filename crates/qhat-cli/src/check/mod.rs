@@ -216,7 +216,7 @@ impl Findings {
 }
 
 fn is_on_free_particle(terms: &Terms, row: usize) -> bool {
-    terms.jacobian.row(row).any(|(particle, _)| terms.inverse_masses[particle.0] > 0.0)
+    terms.jacobian.row(row).any(|(particle, _)| terms.inverse_masses[particle.index()] > 0.0)
 }
 
 fn redundancy(states_of_self_stress: usize) -> String {

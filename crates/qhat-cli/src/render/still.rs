@@ -70,7 +70,7 @@ impl Still {
         let time = stored.numbers("t", frame, 1)?[0];
         let positions = stored.numbers("positions", frame, system.coordinate_count())?;
         let tension = stored.numbers("tension", frame, system.links().count())?;
-        let state = scene.state.at(positions, scene.state.velocities().to_vec());
+        let state = scene.state.with_motion(positions, scene.state.velocities().to_vec());
         let hash = stored.origin().and_then(|origin| Some(origin.get("scene_hash")?.as_str()?.to_owned()));
         if hash.is_some_and(|hash| hash != source.hash()) {
             warn(format!("`{}` comes from another text of the scene `{}`", path.display(), source.name));
@@ -147,7 +147,8 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
 /// The places of links that must have broken: a trajectory tells only what they carry.
 fn broken(system: &System, state: &State, tension: &[f64]) -> Vec<usize> {
     let (d, q) = (system.dimension(), state.positions());
-    let distance = |ParticleId(a): ParticleId, ParticleId(b): ParticleId| {
+    let distance = |a: ParticleId, b: ParticleId| {
+        let (a, b) = (a.index(), b.index());
         (0..d).map(|k| q[d * a + k] - q[d * b + k]).map(|x| x * x).sum::<f64>().sqrt()
     };
     let has_parted = |(place, link): &(usize, qhat::Link<'_>)| {

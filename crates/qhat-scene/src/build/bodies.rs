@@ -9,8 +9,7 @@ use std::ops::Range;
 /// A body whose particles are added and whose rods and midpoints are not.
 pub(super) struct Unheld {
     body: qhat::Body,
-    /// The number of the first particle of the body.
-    first: usize,
+    ids: Vec<ParticleId>,
     prefix: String,
 }
 
@@ -39,6 +38,7 @@ impl Assembly<'_, '_, '_> {
         }
         let Common { prefix, velocity, .. } = body.common();
         let velocities = made.velocities(velocity, spin);
+        let mut ids = Vec::with_capacity(made.points.len());
         for (i, ((x, v), &mass)) in made.points.iter().zip(&velocities).zip(&made.masses).enumerate() {
             if !x.iter().chain(v).all(|number| number.is_finite()) {
                 let message = "the positions or velocities of this body's particles are not finite numbers";
@@ -50,6 +50,7 @@ impl Assembly<'_, '_, '_> {
             self.positions.extend(&position);
             self.inertias.push(Inertia { mass, fixed: false });
             let added = self.builder.particle(Particle { name: name.clone(), position, velocity, mass, fixed: false });
+            ids.push(added);
             if let Err(origin) = self.ids.take(&name, added, place.clone()) {
                 let message = format!("this body makes a particle {}, but that id is taken", self.report.quoted(&name));
                 let line = self.report.line_of(origin.start);
@@ -57,20 +58,20 @@ impl Assembly<'_, '_, '_> {
                 return None;
             }
         }
-        Some(Unheld { body: made, first, prefix: prefix.to_owned() })
+        Some(Unheld { body: made, ids, prefix: prefix.to_owned() })
     }
 
     /// Adds the rods and midpoints of all bodies.
     pub(super) fn hold_bodies(&mut self, unheld: &[Unheld]) {
-        for Unheld { body, first, prefix } in unheld {
+        for Unheld { body, ids, prefix } in unheld {
             for (rod, &[a, b]) in body.rods.iter().enumerate() {
                 let name = self.free_name(format!("{prefix}{a}-{prefix}{b}"));
-                let [a, b] = [a, b].map(|end| ParticleId(first + end));
+                let [a, b] = [a, b].map(|end| ids[end]);
                 self.builder.constraint(name, Distance::new(a, b, body.length(rod)));
             }
             for &[middle, a, b] in &body.midpoints {
                 let name = self.free_name(format!("midpoint({prefix}{middle})"));
-                let [middle, a, b] = [middle, a, b].map(|particle| ParticleId(first + particle));
+                let [middle, a, b] = [middle, a, b].map(|particle| ids[particle]);
                 self.builder.constraint(name, Relation::midpoint(middle, a, b));
             }
         }

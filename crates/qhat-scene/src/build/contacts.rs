@@ -48,7 +48,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     pub(super) fn add_ball(&mut self, it: &Ball, place: &Node) -> Option<()> {
-        let surface = Surface::Ball { centre: it.center.padded(), radius: it.radius, inside: it.inside };
+        let surface = Surface::Ball { center: it.center.padded(), radius: it.radius, inside: it.inside };
         self.add_obstacles(it, it.particles.as_deref(), surface, (it.restitution, it.friction), place)
     }
 
@@ -61,7 +61,7 @@ impl Assembly<'_, '_, '_> {
         }
         // In the plane the engine checks that the third number is positive, and does not use it.
         let half = std::array::from_fn(|k| it.size.0.get(k).map_or(1.0, |size| 0.5 * size));
-        let surface = Surface::Box { centre: it.center.padded(), half };
+        let surface = Surface::Box { center: it.center.padded(), half };
         self.add_obstacles(it, it.particles.as_deref(), surface, (it.restitution, it.friction), place)
     }
 

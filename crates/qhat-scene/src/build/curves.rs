@@ -4,7 +4,7 @@ use super::Assembly;
 use crate::model::curves::{Circle, Curve, Ellipse, Sphere};
 use crate::model::{Driven, DrivenVector, Id, Parameters};
 use crate::tree::Node;
-use qhat::{Anchor, ParticleId, Purpose};
+use qhat::{Anchor, GeometryError, ParticleId, Purpose};
 
 /// The keys that a sphere and a circle share.
 struct Round<'a> {
@@ -139,7 +139,7 @@ impl Assembly<'_, '_, '_> {
             }
             Err(error) => {
                 let span = if it.radius.is_some() { &place.key("points").span } else { &place.span };
-                self.report.error(span.clone(), error, None);
+                self.report.error(span.clone(), error.to_string(), None);
                 None
             }
         }
@@ -159,7 +159,12 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// A curve given by an expression of s for each coordinate.
-    fn path(&mut self, path: &[String], range: Option<[f64; 2]>, place: &Node) -> Option<Result<qhat::Curve, String>> {
+    fn path(
+        &mut self,
+        path: &[String],
+        range: Option<[f64; 2]>,
+        place: &Node,
+    ) -> Option<Result<qhat::Curve, GeometryError>> {
         let Some([from, to]) = range else {
             // A range that is written but missing here was refused by the check against the schema.
             if place.get("range").is_none() {

@@ -47,7 +47,7 @@ impl Assembly<'_, '_, '_> {
                 Some(scale) => constraint.with_scale(scale),
                 None => constraint,
             };
-            if let Err(message) = constraint.check() {
+            if let Err(reason) = constraint.check() {
                 // The scale is above 0, as the schema asks, so that one of these three is wrong.
                 let help = if constraint.expression().particles().is_empty() {
                     "write it in the coordinates of particles"
@@ -56,7 +56,7 @@ impl Assembly<'_, '_, '_> {
                 } else {
                     "C(q, t) and its derivatives must be finite numbers at t = 0 and the positions at the start"
                 };
-                self.report.error(place.span.clone(), message, Some(help.into()));
+                self.report.error(place.span.clone(), reason.to_string(), Some(help.into()));
                 return None;
             }
             let row = if is_list { format!("{name}[{k}]") } else { name.clone() };
@@ -161,7 +161,7 @@ impl Assembly<'_, '_, '_> {
     /// The reason why this cannot be a parameter, and the help.
     fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
         match check_parameter(name, value) {
-            Err(message) => Some((message, None)),
+            Err(reason) => Some((reason.to_string(), None)),
             Ok(()) => self.ids.find(name).map(|_| {
                 let message = format!("{} is the id of a particle, too", self.report.quoted(name));
                 (message, Some("give the parameter another name".to_owned()))

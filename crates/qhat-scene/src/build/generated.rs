@@ -11,8 +11,7 @@ use std::ops::Range;
 pub(super) struct Unlinked<'a> {
     link: &'a Link,
     place: Range<usize>,
-    /// The number of the first particle of the block.
-    first: usize,
+    ids: Vec<ParticleId>,
     names: Vec<String>,
     pairs: Vec<(usize, usize)>,
 }
@@ -44,7 +43,7 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place, "fixed particles cannot have a velocity", Some(help));
             return None;
         }
-        let first = self.positions.len() / self.dimension;
+        let mut ids = Vec::with_capacity(particles.len());
         let mut names = Vec::with_capacity(particles.len());
         for (name, at) in particles {
             if !at.iter().all(|x| x.is_finite()) {
@@ -65,16 +64,17 @@ impl Assembly<'_, '_, '_> {
                 self.report.error(place, message, Some(help));
                 return None;
             }
+            ids.push(added);
             names.push(name);
         }
-        Some(Unlinked { link, place, first, names, pairs: links })
+        Some(Unlinked { link, place, ids, names, pairs: links })
     }
 
     /// Adds the links of all blocks.
     pub(super) fn add_links(&mut self, unlinked: &[Unlinked<'_>]) {
-        for Unlinked { link, place, first, names, pairs } in unlinked {
+        for Unlinked { link, place, ids, names, pairs } in unlinked {
             for &(a, b) in pairs {
-                let [a, b] = [a, b].map(|k| (first + k, names[k].as_str()));
+                let [a, b] = [a, b].map(|k| (ids[k], names[k].as_str()));
                 if self.add_link(link, a, b, place).is_none() {
                     break;
                 }
@@ -82,9 +82,15 @@ impl Assembly<'_, '_, '_> {
         }
     }
 
-    fn add_link(&mut self, link: &Link, a: (usize, &str), b: (usize, &str), place: &Range<usize>) -> Option<()> {
+    fn add_link(
+        &mut self,
+        link: &Link,
+        a: (ParticleId, &str),
+        b: (ParticleId, &str),
+        place: &Range<usize>,
+    ) -> Option<()> {
         let length = self.distance(a.0, b.0);
-        let (first, second) = (ParticleId(a.0), ParticleId(b.0));
+        let (first, second) = (a.0, b.0);
         match link {
             Link::Rod(_) if !(length.is_finite() && length > 0.0) => {
                 let [a, b] = [a.1, b.1].map(|name| self.report.quoted(name));

@@ -28,7 +28,7 @@ impl Assembly<'_, '_, '_> {
         let first = self.pair(&it.between, place.key("between"));
         let second = self.pair(&it.of, place.key("of"));
         let ((a, b), (c, d)) = (first?, second?);
-        let ratio = it.ratio.unwrap_or_else(|| self.distance(a.0, b.0) / self.distance(c.0, d.0));
+        let ratio = it.ratio.unwrap_or_else(|| self.distance(a, b) / self.distance(c, d));
         if !(ratio.is_finite() && ratio > 0.0) {
             let message = "the ratio of these lengths at the start cannot be measured";
             self.report.error(place.span.clone(), message, Some("give `ratio`, or lengths above 0 to both".into()));

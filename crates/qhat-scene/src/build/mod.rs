@@ -160,5 +160,6 @@ fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &Places) -> Rang
         BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),
+        _ => 0..0,
     }
 }

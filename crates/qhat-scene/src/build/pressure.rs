@@ -16,9 +16,9 @@ impl Assembly<'_, '_, '_> {
             return Some(());
         };
         let gas = Gas::new(facets, it.pressure, exponent, self.dimension_of_system(), &self.positions);
-        if let Err(message) = gas.check() {
+        if let Err(reason) = gas.check() {
             let help = "leave out `exponent` for a constant pressure".to_owned();
-            self.report.error(place.span.clone(), message, Some(help));
+            self.report.error(place.span.clone(), reason.to_string(), Some(help));
             return None;
         }
         self.builder.force(gas);
@@ -34,7 +34,7 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let mut outline = self.different(&it.outline, place.key("outline"))?;
-        let x = |id: ParticleId| [self.positions[id.0 * 2], self.positions[id.0 * 2 + 1]];
+        let x = |id: ParticleId| [self.positions[id.index() * 2], self.positions[id.index() * 2 + 1]];
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         let twice_area: f64 = ends.map(|(&a, &b)| x(a)[0] * x(b)[1] - x(a)[1] * x(b)[0]).sum();
         if twice_area < 0.0 {

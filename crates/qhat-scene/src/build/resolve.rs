@@ -74,19 +74,22 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn listed_or_free(&mut self, ids: Option<&[Id]>, place: &Node) -> Option<Vec<ParticleId>> {
         match ids {
             Some(ids) => self.different(ids, place.key("particles")),
-            None => Some((0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed).map(ParticleId).collect()),
+            None => {
+                let free = (0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed);
+                free.map(|i| self.builder.particle_at(i)).collect()
+            }
         }
     }
 
     /// The position of a particle at the start [m], with three components as the engine takes points.
-    pub(super) fn start(&self, ParticleId(i): ParticleId) -> [f64; 3] {
-        let start = &self.positions[i * self.dimension..][..self.dimension];
+    pub(super) fn start(&self, particle: ParticleId) -> [f64; 3] {
+        let start = &self.positions[particle.index() * self.dimension..][..self.dimension];
         std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
     }
 
     /// The distance of two particles at the start [m].
-    pub(super) fn distance(&self, a: usize, b: usize) -> f64 {
-        let d = self.dimension;
+    pub(super) fn distance(&self, a: ParticleId, b: ParticleId) -> f64 {
+        let (d, a, b) = (self.dimension, a.index(), b.index());
         let squares = (0..d).map(|k| self.positions[a * d + k] - self.positions[b * d + k]).map(|x| x * x);
         squares.sum::<f64>().sqrt()
     }

@@ -34,7 +34,7 @@ impl Assembly<'_, '_, '_> {
         (a, b): (ParticleId, ParticleId),
         place: &Node,
     ) -> Option<f64> {
-        let length = self.distance(a.0, b.0);
+        let length = self.distance(a, b);
         let [one, other] = between.each_ref().map(|Id(id)| self.report.quoted(id));
         let complaint = if length == 0.0 {
             format!("a {what} needs a length, but {one} and {other} start at the same place")
@@ -82,7 +82,7 @@ impl Assembly<'_, '_, '_> {
                     let [a, b] = ends.map(|end| &it.particles[end].0);
                     let name = self.free_name(format!("{a}-{b}"));
                     let [a, b] = ends.map(|end| particles[end]);
-                    let rod = qhat::Distance::new(a, b, self.distance(a.0, b.0));
+                    let rod = qhat::Distance::new(a, b, self.distance(a, b));
                     self.builder.constraint(name, rod);
                 }
                 Some(())

@@ -28,7 +28,7 @@ impl Assembly<'_, '_, '_> {
 
     /// The rest length of a spring [m]: as given, else the distance at the start.
     fn rest(&mut self, given: Option<f64>, (a, b): (ParticleId, ParticleId), place: &Node) -> Option<f64> {
-        let rest = given.unwrap_or_else(|| self.distance(a.0, b.0));
+        let rest = given.unwrap_or_else(|| self.distance(a, b));
         if !rest.is_finite() {
             let message = "the ends of this spring start too far apart to measure its rest length";
             self.report.error(place.key("between").span.clone(), message, Some("give `rest` [m]".into()));
@@ -63,7 +63,7 @@ impl Assembly<'_, '_, '_> {
     fn hinge_angle(&self, a: ParticleId, b: ParticleId, c: ParticleId) -> Option<f64> {
         let d = self.dimension;
         let arm = |end: ParticleId| -> [f64; 3] {
-            let of = |k: usize| self.positions[end.0 * d + k] - self.positions[b.0 * d + k];
+            let of = |k: usize| self.positions[end.index() * d + k] - self.positions[b.index() * d + k];
             std::array::from_fn(|k| if k < d { of(k) } else { 0.0 })
         };
         let dot = |u: [f64; 3], w: [f64; 3]| u[0] * w[0] + u[1] * w[1] + u[2] * w[2];

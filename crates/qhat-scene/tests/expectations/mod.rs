@@ -1,6 +1,6 @@
 //! Runs a scene and tells which of its expectations do not hold; what each means is in docs/scene-file.md.
 
-use qhat::{Event, EventKind, ParticleId, Simulation};
+use qhat::{Event, EventKind, Simulation};
 use qhat_scene::{AtEnd, Axis, Expect, Scene, SpeedAtEnd};
 use std::collections::BTreeSet;
 
@@ -70,7 +70,7 @@ fn check_rank(simulation: &mut Simulation, expect: &Expect, failures: &mut Vec<S
         return;
     };
     let system = simulation.system();
-    let free = (0..system.particle_count()).filter(|&i| !system.is_fixed(ParticleId(i))).count();
+    let free = system.particles().filter(|&particle| !system.is_fixed(particle)).count();
     let freedom = free * system.dimension() - rank;
     let redundant = terms.is_open.iter().filter(|is_open| !**is_open).count() - rank;
     for (name, expected, found) in [

@@ -15,11 +15,12 @@ pub(super) fn points(picture: &Picture<'_>, places: &[Vec3], shapes: &[Shape]) -
             ShapeKind::Nail | ShapeKind::Wire | ShapeKind::DrivenRod => all.extend(&shape.points),
             ShapeKind::Box => all.extend(around(shape.points[0], shape.points[1], dimension)),
             ShapeKind::Ring | ShapeKind::Ball | ShapeKind::Bowl | ShapeKind::Wheel => {
-                let centre = shape.particles.first().map_or_else(|| shape.points[0], |particle| places[particle.0]);
+                let centre =
+                    shape.particles.first().map_or_else(|| shape.points[0], |particle| places[particle.index()]);
                 all.extend(around(centre, [shape.size; 3], dimension));
             }
             ShapeKind::Rope => {
-                let [a, b] = [0, 1].map(|k: usize| places[shape.particles[k].0]);
+                let [a, b] = [0, 1].map(|k: usize| places[shape.particles[k].index()]);
                 let middle = scaled(plus(a, b), 0.5);
                 let down = gravity(picture.system);
                 let fall = if dot(down, down) > 0.0 { scaled(down, 1.0 / dot(down, down).sqrt()) } else { [0.0; 3] };

@@ -34,7 +34,7 @@ pub(super) fn trace_coil(view: &View<'_>, shape: &Shape, path: &mut Path) {
 /// A ring with a cross, drawn under the particle.
 pub(super) fn trace_nail(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let [x, y] = view.camera.spot(shape.points[0]);
-    let radius = NAIL + shape.particles.first().map_or(0.0, |particle| view.radii[particle.0]);
+    let radius = NAIL + shape.particles.first().map_or(0.0, |particle| view.radii[particle.index()]);
     path.circle([x, y], radius);
     let arm = radius + NAIL;
     path.segment([x - arm, y], [x + arm, y]);

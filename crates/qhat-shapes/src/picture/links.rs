@@ -27,7 +27,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     let in_space = view.camera.dimension == 3 && range > 0.0;
     // The nearness of a link to the viewer, from 0 to 1.
     let nearness = |shape: &Shape| {
-        let depth = |k: usize| view.screen[shape.particles[k].0][2];
+        let depth = |k: usize| view.screen[shape.particles[k].index()][2];
         if in_space { (0.5 * (depth(0) + depth(1)) - far) / range } else { 1.0 }
     };
     if in_space {
@@ -113,7 +113,7 @@ pub(super) fn trace_slack(view: &View<'_>, shape: &Shape, path: &mut Path) {
         return;
     }
     let [from, to] = view.ends(shape);
-    let [a, b] = [0, 1].map(|k: usize| view.places[shape.particles[k].0]);
+    let [a, b] = [0, 1].map(|k: usize| view.places[shape.particles[k].index()]);
     // The middle of a quadratic curve lies halfway between the chord and the control point.
     let [dx, dy] = view.camera.direction(scaled(view.down, 2.0 * sag(shape.size, minus(a, b))));
     path.go(from);

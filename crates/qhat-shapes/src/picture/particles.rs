@@ -3,7 +3,6 @@
 use super::path::number;
 use super::pen::Pen;
 use super::view::{RADII, View};
-use qhat::ParticleId;
 
 pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     let system = view.picture.system;
@@ -13,7 +12,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     }
     pen.open("g", &[("class", "particles"), ("fill", view.palette.particle), ("stroke", view.palette.background)]);
     for i in order {
-        let fixed = system.is_fixed(ParticleId(i));
+        let fixed = system.inverse_masses()[i] == 0.0;
         let radius = view.radii[i];
         if view.crowded && !fixed && radius == RADII[0] {
             continue;

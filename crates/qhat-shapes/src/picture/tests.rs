@@ -87,7 +87,7 @@ fn slack_ropes_hang_taut_ropes_are_straight_and_broken_links_leave_stubs() {
     let mut builder = System::builder(Dimension::Two);
     let ends = [0.0, 1.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0]).fixed()));
     let rope = |a: ParticleId, b, length| Constraint::from(Limits::rope(a, b, length));
-    builder.constraint("slack", rope(ends[0], ends[1], 2.0)).constraint("taut", rope(ends[1], ends[2], 1.0));
+    builder.with_constraint("slack", rope(ends[0], ends[1], 2.0)).constraint("taut", rope(ends[1], ends[2], 1.0));
     builder.constraint("broken", Distance::new(ends[0], ends[2], 1.0));
     builder.force(Gravity { acceleration: [0.0, -10.0, 0.0] });
     let (system, state) = builder.build().unwrap();

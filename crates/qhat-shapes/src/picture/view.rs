@@ -82,7 +82,7 @@ impl<'a> View<'a> {
 
     /// The position of a particle in the picture.
     pub(super) fn spot(&self, particle: qhat::ParticleId) -> Spot {
-        let [x, y, _] = self.screen[particle.0];
+        let [x, y, _] = self.screen[particle.index()];
         [x, y]
     }
 
@@ -96,7 +96,7 @@ impl<'a> View<'a> {
 
     /// The distance of the two particles of a shape \[m\].
     pub(super) fn distance(&self, shape: &Shape) -> f64 {
-        let [a, b] = [0, 1].map(|k: usize| self.places[shape.particles[k].0]);
+        let [a, b] = [0, 1].map(|k: usize| self.places[shape.particles[k].index()]);
         norm(minus(a, b))
     }
 

@@ -1,7 +1,6 @@
 //! G with G Gᵀ = S/m: Cholesky's method with the largest pivot first, so that it ends with the rank.
 
-use super::FLAT;
-use crate::error::BodyError;
+use super::{BodyError, FLAT};
 
 /// The columns of G [m], as many as are independent, from S/m [m²].
 ///

@@ -24,9 +24,11 @@
 //! A body that is uniform over x = c + Σ u_k e_k, |u_k| ≤ ½ (a box with the edges e_k) has S = m Σ e_k e_kᵀ/12, so
 //! g_k = e_k/√12. A triangle is equimomental to m/3 at the middle of each side. In the plane only tr(S) counts.
 
+mod error;
 mod factor;
 
-use crate::error::BodyError;
+pub use error::BodyError;
+
 use crate::number::cross;
 use crate::point::{add, dot, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -195,7 +197,7 @@ impl Body {
     }
 
     /// c [m].
-    pub fn centre(&self) -> [f64; 3] {
+    pub fn center(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (&point, &mass) in self.points.iter().zip(&self.masses) {
             add(&mut sum, ParticleId(0), scaled(mass, point));
@@ -205,7 +207,7 @@ impl Body {
 
     /// v_i = v + ω × (x_i − c) [m/s] for the velocity v of c [m/s] and the angular velocity ω [rad/s].
     pub fn velocities(&self, v: [f64; 3], omega: [f64; 3]) -> Vec<[f64; 3]> {
-        let c = self.centre();
+        let c = self.center();
         let turning = self.points.iter().map(|&x| cross(omega, minus(x, c)));
         turning.map(|turning| std::array::from_fn(|k| v[k] + turning[k])).collect()
     }

@@ -103,7 +103,7 @@ impl Forces {
         let motion = Motion::<D> { q: &self.q, qd: &self.qd, t };
         let mut power = 0.0;
         for &number in &self.varying {
-            let force = system.force(number);
+            let force = system.numbered_force(number);
             force.add(motion, &system.mass, &mut self.Q);
             power += force.power(motion);
         }

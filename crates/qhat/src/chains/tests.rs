@@ -33,8 +33,10 @@ fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
             let is_held = i == 0 && k % 3 == 0;
             let id = builder.particle(if is_held { particle.fixed() } else { particle.with_velocity(velocity) });
             if k % 4 == 3 && i == links {
-                builder
-                    .constraint(format!("nail {k}"), Nail::new(id, std::array::from_fn(|c| *x.get(c).unwrap_or(&0.0))));
+                builder.constraint(
+                    format!("nail {k}"),
+                    Nail::new(id, std::array::from_fn::<_, 3, _>(|c| *x.get(c).unwrap_or(&0.0))),
+                );
             }
             let step: Vec<f64> = (0..d).map(|c| 0.5 * numbers.next() + if c == 0 { 0.7 } else { 0.0 }).collect();
             if let Some(before) = before {
@@ -47,7 +49,7 @@ fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
         }
     }
     let last = ParticleId(lengths.iter().map(|links| links + 1).sum::<usize>() - 1);
-    builder.force(Gravity { acceleration: [0.3, -9.81, 1.0] }).force(Drag { coefficient: 0.2 });
+    builder.with_force(Gravity { acceleration: [0.3, -9.81, 1.0] }).force(Drag { coefficient: 0.2 });
     builder.force(PointForce { particle: last, force: [1.0, 2.0, 3.0] });
     builder.force(MouseSpring { particle: last, target: [0.0; 3], stiffness: 5.0, damping: 0.5 });
     builder.force(Spring { a: ParticleId(0), b: last, stiffness: 3.0, damping: 0.1, rest: 0.5 });
@@ -180,7 +182,7 @@ fn a_taut_line_goes_over_to_the_general_path() {
     let a = builder.particle(Particle::at("a", [0.0, 0.0]).fixed());
     let b = builder.particle(Particle::at("b", [1.0, 0.0]));
     let c = builder.particle(Particle::at("c", [2.0, 0.0]).fixed());
-    builder.constraint("ab", Distance::new(a, b, 1.0)).constraint("bc", Distance::new(b, c, 1.0));
+    builder.with_constraint("ab", Distance::new(a, b, 1.0)).constraint("bc", Distance::new(b, c, 1.0));
     builder.force(PointForce { particle: b, force: [1.0, 0.0, 0.0] });
     let (system, mut state) = builder.build().unwrap();
     let plan = system.chains.as_ref().unwrap();

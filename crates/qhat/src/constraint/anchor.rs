@@ -1,5 +1,7 @@
 //! Anchor: the point that a constraint measures from: a fixed point, a driven point or a particle.
 
+use super::error::ConstraintError;
+use crate::allowed::ValueError;
 use crate::driven::Driven;
 use crate::number::Number;
 use crate::space::ParticleId;
@@ -42,7 +44,7 @@ impl Anchor {
         }
     }
 
-    pub(super) fn check(&self, what: &str) -> Result<(), String> {
+    pub(super) fn check(&self, what: &'static str) -> Result<(), ConstraintError> {
         if let Anchor::Point(point) = self { check_point(point, what) } else { Ok(()) }
     }
 }
@@ -58,19 +60,26 @@ pub(super) fn follow<N: Number, const D: usize>(point: &DrivenPoint, t: N) -> ([
     (components.map(|(value, _)| value), components.map(|(_, rate)| rate))
 }
 
-pub(super) fn check_point(point: &DrivenPoint, what: &str) -> Result<(), String> {
-    point.iter().try_for_each(|component| component.check(what))
+pub(super) fn check_point(point: &DrivenPoint, what: &'static str) -> Result<(), ConstraintError> {
+    point.iter().try_for_each(|component| Ok(component.check(what)?))
 }
 
 /// `Ok` if a vector has a direction at t = 0 in d dimensions.
-pub(super) fn check_direction(vector: &DrivenPoint, what: &str, dimension: usize) -> Result<(), String> {
+pub(super) fn check_direction(
+    vector: &DrivenPoint,
+    what: &'static str,
+    dimension: usize,
+) -> Result<(), ConstraintError> {
     let squares: f64 = vector[..dimension].iter().map(|component| component.value(0.0)).map(|x| x * x).sum();
-    if squares.is_normal() { Ok(()) } else { Err(format!("{what} must not be zero, nor too long or short to square")) }
+    if squares.is_normal() { Ok(()) } else { Err(ValueError::NoDirection { what }.into()) }
 }
 
 /// `Ok` if all named particles are different.
-pub(super) fn check_different(particles: impl Iterator<Item = ParticleId>, what: &str) -> Result<(), String> {
+pub(super) fn check_different(
+    particles: impl Iterator<Item = ParticleId>,
+    what: &'static str,
+) -> Result<(), ConstraintError> {
     let particles: Vec<_> = particles.collect();
     let twice = (1..particles.len()).any(|i| particles[..i].contains(&particles[i]));
-    if twice { Err(format!("{what} needs different particles, but one is named twice")) } else { Ok(()) }
+    if twice { Err(ConstraintError::NamedTwice { what }) } else { Ok(()) }
 }

@@ -18,8 +18,9 @@
 //! failure the numbers are undefined, and the step ends in an error.
 
 use super::arms::Arms;
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
-use crate::allowed::finite;
+use crate::allowed::all_finite;
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, norm, raised, scaled};
 use crate::space::ParticleId;
@@ -95,17 +96,17 @@ impl Smooth for Angle {
         1.0
     }
 
-    fn check(&self) -> Result<(), String> {
-        if (0..self.arms.count()).any(|arm| self.arms.is_without_length(arm)) {
-            return Err("an arm goes from one particle to another".into());
+    fn check(&self) -> Result<(), ConstraintError> {
+        if let Some(arm) = (0..self.arms.count()).find(|&arm| self.arms.is_without_length(arm)) {
+            return Err(ConstraintError::ArmEnds { arm });
         }
         if self.has_direction() {
-            self.direction.iter().try_for_each(|&component| finite("the direction", component))?;
+            all_finite("the direction", &self.direction)?;
             if self.direction == [0.0; 3] {
-                return Err("a direction needs a length".into());
+                return Err(ConstraintError::NoDirection);
             }
         }
-        self.angle.check("an angle")
+        Ok(self.angle.check("an angle")?)
     }
 }
 

@@ -11,6 +11,7 @@
 //! origin keeps its digits. Sides may cross; the sum then counts each loop with its sign. Fails where all corners
 //! are at one point, because the gradient vanishes there.
 
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, minus};
@@ -51,13 +52,13 @@ impl Smooth for Area {
         self.area.value(0.0).abs().max(extent * extent)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.corners.len() < 3 {
-            return Err(format!("a polygon has three corners or more, not {}", self.corners.len()));
+            return Err(ConstraintError::PolygonCorners { count: self.corners.len() });
         }
-        if (1..self.corners.len()).any(|i| self.corners[..i].contains(&self.corners[i])) {
-            return Err("a particle can be one corner of a polygon only".into());
+        if let Some(corner) = (1..self.corners.len()).find(|&i| self.corners[..i].contains(&self.corners[i])) {
+            return Err(ConstraintError::PolygonCornerTwice { corner });
         }
-        self.area.check("an area")
+        Ok(self.area.check("an area")?)
     }
 }

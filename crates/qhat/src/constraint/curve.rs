@@ -17,6 +17,7 @@
 
 use super::polyline::Polyline;
 use super::spline::Spline;
+use crate::allowed::GeometryError;
 use crate::expression::Expression;
 use crate::number::Number;
 use crate::point::{Point, dot, minus};
@@ -66,17 +67,15 @@ impl Curve {
     /// # Errors
     /// A number of components other than two or three; a component that depends on more than s; bounds in the wrong
     /// order; a curve that is not finite.
-    pub fn parametric(components: Vec<Expression>, from: f64, to: f64) -> Result<Self, String> {
+    pub fn parametric(components: Vec<Expression>, from: f64, to: f64) -> Result<Self, GeometryError> {
         if !(2..=3).contains(&components.len()) {
-            return Err(format!("a curve has 2 or 3 components, not {}", components.len()));
+            return Err(GeometryError::CurveComponents { count: components.len() });
         }
-        if components.iter().any(|component| !component.particles().is_empty()) {
-            return Err("a curve may depend on s only".into());
+        if let Some(component) = components.iter().position(|component| !component.particles().is_empty()) {
+            return Err(GeometryError::CurveNamesParticles { component });
         }
         if !(from < to && (to - from).is_finite()) {
-            return Err(format!(
-                "the parameter of a curve must grow from its start to its end, but goes from {from} to {to}"
-            ));
+            return Err(GeometryError::CurveRange { from, to });
         }
         Curve::new(CurveForm::Expressions(components), from, to)
     }
@@ -86,7 +85,7 @@ impl Curve {
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed spline; two neighbours at one place; a number that is not finite.
-    pub fn through(points: &[[f64; 3]], closed: bool) -> Result<Self, String> {
+    pub fn through(points: &[[f64; 3]], closed: bool) -> Result<Self, GeometryError> {
         let spline = Spline::new(points, closed)?;
         let end = spline.end();
         Curve::new(CurveForm::Spline(spline), 0.0, end)
@@ -98,26 +97,26 @@ impl Curve {
     /// # Errors
     /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
     /// 180°; a radius that is too large for the straight pieces beside a corner, with the largest that fits.
-    pub fn polyline(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, String> {
+    pub fn polyline(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, GeometryError> {
         let polyline = Polyline::new(points, radius, closed)?;
         let to = polyline.end();
         Ok(Curve { shape: Arc::new(Shape { form: CurveForm::Polyline(polyline), from: 0.0, to, samples: Vec::new() }) })
     }
 
-    fn new(form: CurveForm, from: f64, to: f64) -> Result<Self, String> {
+    fn new(form: CurveForm, from: f64, to: f64) -> Result<Self, GeometryError> {
         let mut shape = Shape { form, from, to, samples: Vec::new() };
         shape.samples = (0..=SAMPLES).map(|i| shape.at::<3>(shape.parameter(i)).map(|[c, _, _]| c)).collect();
         if shape.samples.iter().flatten().any(|c| !c.is_finite()) {
-            return Err(format!("the curve is not finite everywhere from {from} to {to}"));
+            return Err(GeometryError::CurveNotFinite { from, to });
         }
         Ok(Curve { shape: Arc::new(shape) })
     }
 
-    /// `Ok` if the curve can be used in d dimensions.
-    pub(super) fn fits(&self, dimension: usize) -> Result<(), String> {
+    /// `Ok` if the curve has a meaning in d dimensions.
+    pub(super) fn fits(&self, dimension: usize) -> Result<(), GeometryError> {
         match &self.shape.form {
             CurveForm::Expressions(components) if components.len() != dimension => {
-                Err(format!("a curve in {dimension} dimensions has {dimension} components, not {}", components.len()))
+                Err(GeometryError::CurveDimension { dimension, count: components.len() })
             }
             _ => Ok(()),
         }

@@ -14,7 +14,7 @@
 
 use super::anchor::check_different;
 use super::expression::size;
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::hyper::{Hyper, gradient, hessian_blocks, jet};
 use crate::linalg::block::Block;
 use crate::point::{Motion, Point};
@@ -172,15 +172,13 @@ impl Holds for Custom {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.particles.is_empty() {
-            return Err("a custom constraint names no particle, so that nothing could hold it at zero".into());
+            return Err(ConstraintError::CustomWithoutParticles);
         }
         check_different(self.particles.iter().copied(), "a custom constraint")?;
         match self.scale {
-            Some(scale) if !(scale.is_finite() && scale > 0.0) => {
-                Err(format!("the scale of a custom constraint must be above 0 and finite, but is {scale}"))
-            }
+            Some(scale) if !(scale.is_finite() && scale > 0.0) => Err(ConstraintError::CustomScale { scale }),
             _ => Ok(()),
         }
     }

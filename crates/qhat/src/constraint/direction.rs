@@ -9,6 +9,7 @@
 //! fixed u every row is linear.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
+use super::error::ConstraintError;
 use super::moment::moment;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, minus};
@@ -53,11 +54,11 @@ impl Smooth for Direction {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         check_direction(&self.along, "the direction of a line", dimension)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         check_different([self.a, self.b].into_iter(), "a direction")?;
         check_point(&self.along, "the direction of a line")
     }

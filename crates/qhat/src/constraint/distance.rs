@@ -34,8 +34,9 @@
 //!
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
-use super::{Formulation, Holds, RowWriter, Softness};
-use crate::allowed::not_negative;
+use super::{ConstraintError, Formulation, Holds, OnSphere, RowWriter, Softness};
+use crate::allowed::{check_strength, not_negative, positive};
+use crate::driven::Driven;
 use crate::force::{Force, Spring};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
@@ -75,6 +76,20 @@ impl Distance {
     /// A rod of the given length [m] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
+    }
+
+    /// A rod whose length is driven [m], a number or a function of t: an [`OnSphere`] about the particle `b`. It is no
+    /// link; its tension is minus its reaction.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Distance, Driven, Particle, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let [wall, load] = [0.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0])));
+    /// let winch = builder.constraint("winch", Distance::driven(load, wall, Driven::text("2 - t/10")?));
+    /// # Ok::<(), qhat::ExpressionError>(())
+    /// ```
+    pub fn driven(a: ParticleId, b: ParticleId, length: impl Into<Driven>) -> OnSphere {
+        OnSphere::new(a, b, length)
     }
 
     /// The same rod, with the tension or thrust at which it breaks [N].
@@ -193,27 +208,22 @@ impl Holds for Distance {
         Distance { form, ..self.clone() }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.a == self.b {
-            return Err("a distance constraint needs two different particles".into());
+            return Err(ConstraintError::SameEnds { what: "a distance constraint" });
         }
-        if !(self.length.is_finite() && self.length > 0.0) {
-            return Err(format!(
-                "the length of a distance constraint must be positive and finite, but is {}",
-                self.length
-            ));
-        }
+        positive("the length of a distance constraint", self.length)?;
         not_negative("the compliance of a distance constraint", self.compliance)?;
         not_negative("the damping of a distance constraint", self.damping)?;
         if self.compliance > 0.0 && !(1.0 / self.compliance).is_finite() {
-            return Err(format!("a compliance of {:e} m/N is too small to divide by; 0 is rigid", self.compliance));
+            return Err(ConstraintError::ComplianceTooSmall { compliance: self.compliance });
         }
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
-            return Err("a rod with a compliance must be held in the length form".into());
+            return Err(ConstraintError::ComplianceInSquaredForm);
         }
         if self.breaks_at.is_some() && self.compliance > 0.0 {
-            return Err("a rod with a compliance cannot break: leave out one of the two".into());
+            return Err(ConstraintError::ComplianceThatBreaks);
         }
-        crate::allowed::check_strength(self.breaks_at)
+        Ok(check_strength(self.breaks_at)?)
     }
 }

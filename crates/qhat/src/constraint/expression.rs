@@ -20,7 +20,7 @@
 //! Fails where C or a derivative is not finite. At the start this is an error of the builder. Later the whole row
 //! becomes NaN, so that no method mistakes it for zero, and the step ends in `StepError`.
 
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::expression::{Expression, LONGEST_GRADIENT};
 use crate::linalg::block::Block;
 use crate::point::{Motion, Point, norm};
@@ -73,22 +73,22 @@ impl ExpressionConstraint {
     /// `Ok` if the expression can be a constraint.
     ///
     /// # Errors
-    /// An expression without particles or with velocities, numbers that are not finite at the start, a scale of zero.
-    pub fn check(&self) -> Result<(), String> {
+    /// In words: no particle, velocities, numbers that are not finite at the start, no scale.
+    pub fn check(&self) -> Result<(), ConstraintError> {
         if self.expression.uses_velocities() {
-            return Err("a constraint may depend on positions and time only, not on velocities".into());
+            return Err(ConstraintError::DependsOnVelocities);
         }
         if self.expression.particles().is_empty() {
-            return Err("the residual depends on no particle, so that nothing could hold it at zero".into());
+            return Err(ConstraintError::DependsOnNothing);
         }
         if !self.start.is_finite {
-            return Err("the residual or a derivative of it is not a finite number at the start".into());
+            return Err(ConstraintError::NotFiniteAtStart);
         }
         match self.scale {
             Some(scale) if scale.is_finite() && scale > 0.0 => Ok(()),
-            Some(scale) => Err(format!("the scale of a residual must be above 0, but is {scale}")),
+            Some(scale) => Err(ConstraintError::Scale { scale }),
             None if self.start.slope > 0.0 || self.start.bend > 0.0 => Ok(()),
-            None => Err("no position changes the residual at the start, so that its scale must be given".into()),
+            None => Err(ConstraintError::NeedsScale),
         }
     }
 }
@@ -118,8 +118,8 @@ impl Holds for ExpressionConstraint {
         1
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        crate::allowed::only_in(self.expression.dimension(), dimension)
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        super::error::only_in(self.expression.dimension(), dimension)
     }
 
     fn particles(&self) -> Vec<ParticleId> {
@@ -163,7 +163,7 @@ impl Holds for ExpressionConstraint {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         self.check()
     }
 }

@@ -25,8 +25,9 @@
 
 use super::angle::within_half_a_turn;
 use super::arms::Arms;
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
-use crate::allowed::finite;
+use crate::allowed::all_finite;
 use crate::driven::Driven;
 use crate::number::{Number, dot};
 use crate::space::ParticleId;
@@ -144,31 +145,24 @@ impl Smooth for Gears {
         self.parts.iter().map(size).fold(1.0, f64::max)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.parts.len() < 2 {
-            return Err("a gear couples two arms at least".into());
+            return Err(ConstraintError::GearArms);
         }
         for (arm, part) in self.parts.iter().enumerate() {
             if self.arms.is_without_length(arm) {
-                return Err(
-                    "an arm of a gear goes from its centre to another particle, and wheels that mesh have two centres"
-                        .into(),
-                );
+                return Err(ConstraintError::GearArmEnds { arm });
             }
             match *part {
                 Part::Turn(z) if z.unsigned_abs() > MOST_TEETH => {
-                    return Err(format!(
-                        "divided by their common factor, the numbers of teeth may be at most {MOST_TEETH}"
-                    ));
+                    return Err(ConstraintError::GearTeeth { most: MOST_TEETH });
                 }
-                Part::Turn(0) => return Err("a wheel without teeth takes no part; leave it out".into()),
+                Part::Turn(0) => return Err(ConstraintError::GearWithoutTeeth { arm }),
                 Part::Turn(_) => {}
-                Part::Way(k) => {
-                    k.iter().try_for_each(|&component| finite("the direction over the radius of a rack", component))?
-                }
+                Part::Way(k) => all_finite("the direction over the radius of a rack", &k)?,
             }
         }
-        self.angle.check("the angle at which gears mesh")
+        Ok(self.angle.check("the angle at which gears mesh")?)
     }
 }
 

@@ -14,6 +14,14 @@ pub struct Jacobian {
     pub(crate) particle_count: usize,
 }
 
+/// A list of rows, each a list of pairs: a particle and its d numbers.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Jacobian {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq((0..self.row_count()).map(|row| self.row(row).collect::<Vec<_>>()))
+    }
+}
+
 impl Jacobian {
     pub(crate) fn new(layout: Layout, dimension: usize, particle_count: usize) -> Self {
         let blocks = vec![0.0; layout.particle.len() * dimension];

@@ -1,5 +1,6 @@
 //! Kind: the questions that every kind of constraint answers, and the types of the answers.
 
+use super::error::ConstraintError;
 use super::jacobian::RowWriter;
 use crate::force::Force;
 use crate::point::Motion;
@@ -67,13 +68,13 @@ pub(crate) trait Holds {
     /// The same constraint in the form that belongs to a formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
-    /// `Ok` if the constraint can be used in d dimensions; else the reason, in words.
-    fn fits(&self, _dimension: usize) -> Result<(), String> {
+    /// Why the constraint has no meaning in d dimensions, in words.
+    fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
         Ok(())
     }
 
-    /// `Ok` if the numbers of the constraint are allowed; else the reason, in words.
-    fn check(&self) -> Result<(), String>;
+    /// What is wrong with the numbers of the constraint, in words.
+    fn check(&self) -> Result<(), ConstraintError>;
 }
 
 /// A contact of a constraint: a row that opens and closes, C ≥ 0 and λ ≥ 0, with its rows of friction. Rows count

@@ -14,6 +14,7 @@
 //! curvature 1/|d| grows without bound as |d| goes to zero, so a load must not be pulled all the way up to its pulley.
 
 use super::arms::Arms;
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
@@ -80,22 +81,22 @@ impl Smooth for Lengths {
         extent * self.weights.iter().fold(0.0, |most: f64, weight| most.max(weight.abs()))
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.weights.is_empty() {
-            return Err("a rope goes over two points at least".into());
+            return Err(ConstraintError::NoSegments);
         }
         for (segment, &weight) in self.weights.iter().enumerate() {
             finite("a weight", weight)?;
             if weight == 0.0 {
-                return Err("a segment of weight 0 says nothing; leave it out".into());
+                return Err(ConstraintError::NoSegmentWeight { segment });
             }
             if self.segments.is_without_length(segment) {
-                return Err("a segment goes from one particle to another".into());
+                return Err(ConstraintError::SegmentEnds { segment });
             }
         }
         self.total.check("the length of a rope")?;
         if self.total.value(0.0) <= 0.0 && self.weights.iter().all(|&weight| weight > 0.0) {
-            return Err(format!("the length of a rope must be above 0, but is {} m", self.total.value(0.0)));
+            return Err(ConstraintError::RopeLength { length: self.total.value(0.0) });
         }
         Ok(())
     }

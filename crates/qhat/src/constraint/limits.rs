@@ -11,8 +11,8 @@
 //! When a limit is reached, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0, where d has no direction; n is
 //! then the first axis.
 
-use super::{ContactRows, Formulation, Holds, RowWriter};
-use crate::allowed::not_negative;
+use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
+use crate::allowed::{check_restitution, check_strength, not_negative, positive};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -51,7 +51,17 @@ impl Limits {
         Limits { a, b, shortest: Some(shortest), longest: Some(longest), restitution: 0.0, breaks_at: None }
     }
 
-    /// The limits, each with the sign of |d| in C; the longest comes first.
+    /// The same with the part of the closing speed that comes back where a limit is hit [1].
+    pub fn with_restitution(self, restitution: f64) -> Self {
+        Limits { restitution, ..self }
+    }
+
+    /// The same with the tension or thrust that it does not survive [N].
+    pub fn breaking_at(self, tension: f64) -> Self {
+        Limits { breaks_at: Some(tension), ..self }
+    }
+
+    /// The limits with the sign of |d| in C: the longest first.
     fn rows(&self) -> impl Iterator<Item = (f64, f64)> {
         [(-1.0, self.longest), (1.0, self.shortest)].into_iter().filter_map(|(sign, limit)| Some((sign, limit?)))
     }
@@ -60,6 +70,30 @@ impl Limits {
     pub(crate) fn tension(&self, lambda: &[f64]) -> f64 {
         // The sum starts at +0, so that a slack rope has the tension 0 and not −0.
         self.rows().zip(lambda).fold(0.0, |pull, ((sign, _), lambda)| pull - sign * lambda)
+    }
+}
+
+/// A rope, by its word in scenes: [`Limits`] with a longest length.
+#[derive(Clone, Copy, Debug)]
+pub enum Rope {}
+
+impl Rope {
+    /// A rope: slack up to its length [m], and then it does not stretch. The same as [`Limits::rope`].
+    #[expect(clippy::new_ret_no_self, reason = "a rope is one form of limits")]
+    pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
+        Limits::rope(a, b, length)
+    }
+}
+
+/// A strut, by its word in scenes: [`Limits`] with a shortest length.
+#[derive(Clone, Copy, Debug)]
+pub enum Strut {}
+
+impl Strut {
+    /// A strut that keeps two particles at least so far apart [m]. The same as [`Limits::strut`].
+    #[expect(clippy::new_ret_no_self, reason = "a strut is one form of limits")]
+    pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
+        Limits::strut(a, b, length)
     }
 }
 
@@ -123,28 +157,22 @@ impl Holds for Limits {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         if self.a == self.b {
-            return Err("a rope or strut needs two different particles".into());
+            return Err(ConstraintError::SameEnds { what: "a rope or strut" });
         }
         match (self.shortest, self.longest) {
-            (None, None) => return Err("give the shortest length, the longest, or both".into()),
+            (None, None) => return Err(ConstraintError::NoLimits),
             (Some(shortest), Some(longest)) if shortest >= longest => {
-                return Err(format!(
-                    "the longest length must be more than the shortest, but {longest} m is not more than {shortest} m; \
-                     a rod holds one length"
-                ));
+                return Err(ConstraintError::LimitsCrossed { shortest, longest });
             }
             _ => {}
         }
         not_negative("the shortest length", self.shortest.unwrap_or(0.0))?;
-        match self.longest {
-            Some(longest) if !(longest.is_finite() && longest > 0.0) => {
-                return Err(format!("the longest length must be positive and finite, but is {longest}"));
-            }
-            _ => {}
+        if let Some(longest) = self.longest {
+            positive("the longest length", longest)?;
         }
-        crate::allowed::check_restitution(self.restitution)?;
-        crate::allowed::check_strength(self.breaks_at)
+        check_restitution(self.restitution)?;
+        Ok(check_strength(self.breaks_at)?)
     }
 }

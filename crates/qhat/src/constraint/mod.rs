@@ -10,6 +10,7 @@ mod curve;
 mod custom;
 mod direction;
 mod distance;
+mod error;
 mod expression;
 mod gears;
 mod jacobian;
@@ -44,6 +45,7 @@ pub use curve::Curve;
 pub use custom::{Custom, CustomConstraint};
 pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
+pub use error::ConstraintError;
 pub use expression::ExpressionConstraint;
 pub use gears::Gears;
 pub use jacobian::Jacobian;
@@ -52,7 +54,7 @@ pub use kind::Formulation;
 pub(crate) use kind::{ContactRows, Holds, Softness};
 pub(crate) use layout::Layout;
 pub use lengths::Lengths;
-pub use limits::Limits;
+pub use limits::{Limits, Rope, Strut};
 pub use link::Link;
 pub use nail::{Nail, NailForm};
 pub use named::NamedConstraint;
@@ -76,11 +78,22 @@ macro_rules! constraints {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
         /// Any constraint; one variant for each kind.
         #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Constraint { $($(#[$doc])* $kind($kind),)* }
 
         $(impl From<$kind> for Constraint {
             fn from(constraint: $kind) -> Self { Constraint::$kind(constraint) }
         })*
+
+        impl Constraint {
+            /// The names of all kinds: those of the variants.
+            pub const KINDS: &'static [&'static str] = &[$(stringify!($kind)),*];
+
+            /// The name of its kind, one of [`Constraint::KINDS`].
+            pub fn kind(&self) -> &'static str {
+                match self { $(Constraint::$kind(_) => stringify!($kind),)* }
+            }
+        }
 
         impl Holds for Constraint {
             fn row_count(&self, dimension: usize) -> usize {
@@ -128,10 +141,10 @@ macro_rules! constraints {
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
             }
-            fn fits(&self, dimension: usize) -> Result<(), String> {
+            fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
                 match self { $(Constraint::$kind(constraint) => constraint.fits(dimension),)* }
             }
-            fn check(&self) -> Result<(), String> {
+            fn check(&self) -> Result<(), ConstraintError> {
                 match self { $(Constraint::$kind(constraint) => constraint.check(),)* }
             }
         }

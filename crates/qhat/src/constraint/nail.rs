@@ -15,9 +15,11 @@
 //! The scalar form fails exactly where C = 0: at x = p its J is zero, so A has a zero row and no λ can carry the
 //! particle. This is why the source needed a drag on the diagonal.
 
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, Relation, RowWriter};
+use crate::allowed::all_finite;
+use crate::driven::Driven;
 use crate::linalg::block::diagonal;
-use crate::point::{Motion, dot, first, minus, scaled};
+use crate::point::{Motion, Vector, dot, first, minus, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
@@ -44,8 +46,23 @@ pub struct Nail {
 
 impl Nail {
     /// A nail at p [m] in the vector form.
-    pub fn new(particle: ParticleId, at: [f64; 3]) -> Self {
-        Nail { particle, at, form: NailForm::Vector }
+    pub fn new(particle: ParticleId, at: impl Into<Vector>) -> Self {
+        Nail { particle, at: at.into().0, form: NailForm::Vector }
+    }
+
+    /// A nail that moves: a [`Relation`] of the particle to the point p(t) [m], each component a number or a function of
+    /// t; the third is ignored in two dimensions.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Driven, Nail, Particle, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let hand = builder.particle(Particle::at("hand", [0.0, 0.0]));
+    /// let shaken = [Driven::text("sin(6*t)/10")?, 0.0.into(), 0.0.into()];
+    /// builder.constraint("hand", Nail::driven(hand, shaken));
+    /// # Ok::<(), qhat::ExpressionError>(())
+    /// ```
+    pub fn driven(particle: ParticleId, point: [Driven; 3]) -> Relation {
+        Relation::driven(particle, point)
     }
 }
 
@@ -119,7 +136,7 @@ impl Holds for Nail {
         Nail { form, ..self.clone() }
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.at.iter().try_for_each(|&component| crate::allowed::finite("the point of a nail", component))
+    fn check(&self) -> Result<(), ConstraintError> {
+        Ok(all_finite("the point of a nail", &self.at)?)
     }
 }

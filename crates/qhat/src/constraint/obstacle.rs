@@ -20,10 +20,10 @@
 //!
 //! Fails in the centre of a ball, where no direction leads to the surface; n is then the first axis.
 
-use super::{ContactRows, Formulation, Holds, RowWriter};
-use crate::allowed::{finite, not_negative};
+use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
+use crate::allowed::{all_finite, check_restitution, finite, not_negative, positive};
 use crate::linalg::block::{Block, diagonal, outer, plus, zero};
-use crate::point::{Motion, Point, dot, first, first_axis, minus, norm, scaled};
+use crate::point::{Motion, Point, Vector, dot, first, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
@@ -42,9 +42,9 @@ pub enum Surface {
     },
     /// A circle or sphere.
     Ball {
-        /// The centre [m].
-        centre: [f64; 3],
-        /// The radius [m], positive.
+        /// [m].
+        center: [f64; 3],
+        /// [m], positive.
         radius: f64,
         /// Whether the particle stays inside.
         inside: bool,
@@ -52,11 +52,34 @@ pub enum Surface {
     /// A box along the axes; the particle stays outside. The radius of its round edges is a thousandth of the
     /// smallest half.
     Box {
-        /// The centre [m].
-        centre: [f64; 3],
+        /// [m].
+        center: [f64; 3],
         /// Half its size along each axis [m], positive.
         half: [f64; 3],
     },
+}
+
+impl Surface {
+    /// A half-space: the particle stays where normal·x ≥ offset [m], for the unit vector along the normal.
+    pub fn half_space(normal: impl Into<Vector>, offset: f64) -> Self {
+        Surface::HalfSpace { normal: normal.into().0, offset }
+    }
+
+    /// A ball that the particle stays out of: its centre [m] and radius [m].
+    pub fn ball(center: impl Into<Vector>, radius: f64) -> Self {
+        Surface::Ball { center: center.into().0, radius, inside: false }
+    }
+
+    /// A ball that the particle stays in: its centre [m] and radius [m].
+    pub fn inside_of_ball(center: impl Into<Vector>, radius: f64) -> Self {
+        Surface::Ball { center: center.into().0, radius, inside: true }
+    }
+
+    /// A box along the axes that the particle stays out of: its centre [m] and half its size along each axis [m].
+    /// In two dimensions the third component of the half size is ignored, but positive.
+    pub fn block(center: impl Into<Vector>, half: [f64; 3]) -> Self {
+        Surface::Box { center: center.into().0, half }
+    }
 }
 
 /// One particle on one side of a surface, with restitution and friction.
@@ -85,6 +108,16 @@ impl Obstacle {
         Obstacle { particle, surface, restitution: 0.0, friction: 0.0 }
     }
 
+    /// The same with the part of the closing speed that an impact gives back [1].
+    pub fn with_restitution(self, restitution: f64) -> Self {
+        Obstacle { restitution, ..self }
+    }
+
+    /// The same with μ of Coulomb's law [1].
+    pub fn with_friction(self, friction: f64) -> Self {
+        Obstacle { friction, ..self }
+    }
+
     fn near<const D: usize>(&self, x: Point<D>) -> Near<D> {
         match &self.surface {
             Surface::HalfSpace { normal, offset } => {
@@ -92,12 +125,12 @@ impl Obstacle {
                 let n = scaled(1.0 / norm(normal), normal);
                 Near { phi: dot(n, x) - offset, n, H: zero() }
             }
-            Surface::Ball { centre, radius, inside } => {
-                let away = from_point(minus(x, first::<D>(centre)));
+            Surface::Ball { center, radius, inside } => {
+                let away = from_point(minus(x, first::<D>(center)));
                 let sign = if *inside { -1.0 } else { 1.0 };
                 Near { phi: sign * (away.phi - radius), n: scaled(sign, away.n), H: plus(zero(), sign, away.H) }
             }
-            Surface::Box { centre, half } => near_box(minus(x, first::<D>(centre)), first::<D>(half)),
+            Surface::Box { center, half } => near_box(minus(x, first::<D>(center)), first::<D>(half)),
         }
     }
 
@@ -196,29 +229,23 @@ impl Holds for Obstacle {
         self.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
-        crate::allowed::check_restitution(self.restitution)?;
+    fn check(&self) -> Result<(), ConstraintError> {
+        check_restitution(self.restitution)?;
         not_negative("the friction of a barrier", self.friction)?;
-        let positive = |what: &str, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(format!("{what} must be positive and finite, but is {value}"))
-            }
-        };
         match &self.surface {
             Surface::HalfSpace { normal, offset } => {
                 finite("the offset of a half-space", *offset)?;
-                positive("the length of the normal of a half-space", norm(*normal))
+                positive("the length of the normal of a half-space", norm(*normal))?;
             }
-            Surface::Ball { centre, radius, .. } => {
-                centre.iter().try_for_each(|&x| finite("the centre of a ball", x))?;
-                positive("the radius of a ball", *radius)
+            Surface::Ball { center, radius, .. } => {
+                all_finite("the centre of a ball", center)?;
+                positive("the radius of a ball", *radius)?;
             }
-            Surface::Box { centre, half } => {
-                centre.iter().try_for_each(|&x| finite("the centre of a box", x))?;
-                half.iter().try_for_each(|&half| positive("half the size of a box", half))
+            Surface::Box { center, half } => {
+                all_finite("the centre of a box", center)?;
+                half.iter().try_for_each(|&half| positive("half the size of a box", half))?;
             }
         }
+        Ok(())
     }
 }

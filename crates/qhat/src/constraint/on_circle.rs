@@ -11,6 +11,7 @@
 //! where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
+use super::error::ConstraintError;
 use super::on_plane::height;
 use super::on_sphere::{beyond, check_radius};
 use super::smooth::{At, Gradient, Residual, Smooth};
@@ -69,14 +70,14 @@ impl Smooth for OnCircle {
         self.radius.value(0.0)
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         if dimension == 2 {
-            return Err("a circle with an axis needs three dimensions; in two dimensions, use a sphere".into());
+            return Err(ConstraintError::CircleInPlane);
         }
         check_direction(&still(self.axis), "the axis of a circle", dimension)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         self.center.check("the centre of a circle")?;
         check_point(&still(self.axis), "the axis of a circle")?;
         check_different([self.particle].into_iter().chain(self.center.particle()), "a circle")?;

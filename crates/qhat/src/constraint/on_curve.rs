@@ -15,6 +15,7 @@
 //! round corner of a polyline c" jumps (polyline.rs has the cost of such a jump).
 
 use super::curve::{Curve, Foot};
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, norm};
 use crate::space::ParticleId;
@@ -58,11 +59,11 @@ impl Smooth for OnCurve {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        self.curve.fits(dimension)
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        Ok(self.curve.fits(dimension)?)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         Ok(())
     }
 }

@@ -12,6 +12,7 @@
 //! where ρ has no gradient: the first axis is taken for it, so that a projection can still pull the particle out.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
+use super::error::ConstraintError;
 use super::on_sphere::check_radius;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
@@ -73,7 +74,7 @@ impl Smooth for OnEllipse {
         (self.half[0].value(0.0) * self.half[1].value(0.0)).sqrt()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         self.center.check("the centre of an ellipse")?;
         check_point(&still(self.along), "the first axis of an ellipse")?;
         check_direction(&still(self.along), "the first axis of an ellipse", 2)?;

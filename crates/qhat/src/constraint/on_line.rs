@@ -11,6 +11,7 @@
 //! meet, because they do not define a line there; C is then NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
+use super::error::ConstraintError;
 use super::moment::moment;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, dot, minus, plus};
@@ -82,14 +83,14 @@ impl Smooth for OnLine {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         match &self.line {
             Line::Through(_, along) => check_direction(along, "the direction of a line", dimension),
             Line::Particles(..) => Ok(()),
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         match &self.line {
             Line::Through(point, along) => {
                 check_point(point, "the point of a line")?;

@@ -12,6 +12,7 @@
 //! and c are in line, because they do not define a plane there; C is then NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::number::{Number, cross, dot, minus, norm, plus, scaled};
 use crate::space::ParticleId;
@@ -88,9 +89,9 @@ impl Smooth for OnPlane {
         extent
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         if dimension == 2 {
-            return Err("a plane needs three dimensions; in two dimensions, hold the particle on a line".into());
+            return Err(ConstraintError::PlaneInPlane);
         }
         match &self.plane {
             Plane::Across(_, normal) => check_direction(normal, "the normal of a plane", dimension),
@@ -98,7 +99,7 @@ impl Smooth for OnPlane {
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         match &self.plane {
             Plane::Across(point, normal) => {
                 check_point(point, "the point of a plane")?;

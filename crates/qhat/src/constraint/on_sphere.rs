@@ -12,7 +12,9 @@
 //! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
 
 use super::anchor::{Anchor, check_different};
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
+use crate::allowed::positive;
 use crate::driven::Driven;
 use crate::number::{Number, dot, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -46,10 +48,9 @@ pub(super) fn beyond<N: Number, const D: usize>(d: [N; D], r: N) -> (N, [N; D]) 
 }
 
 /// `Ok` if a radius is positive at the start.
-pub(super) fn check_radius(radius: &Driven, what: &str) -> Result<(), String> {
+pub(super) fn check_radius(radius: &Driven, what: &'static str) -> Result<(), ConstraintError> {
     radius.check(what)?;
-    let value = radius.value(0.0);
-    if value > 0.0 { Ok(()) } else { Err(format!("{what} must be positive, but is {value}")) }
+    Ok(positive(what, radius.value(0.0))?)
 }
 
 impl Smooth for OnSphere {
@@ -72,7 +73,7 @@ impl Smooth for OnSphere {
         self.radius.value(0.0)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         self.center.check("the centre of a sphere")?;
         check_different([self.particle].into_iter().chain(self.center.particle()), "a sphere")?;
         check_radius(&self.radius, "the radius of a sphere")

@@ -17,6 +17,7 @@
 //! a real wire. An adaptive method closes in on each of these jumps by rejected and short substeps: `dop853` takes 28
 //! of them at a tolerance of 1e-6 and 40 at 1e-9. A method with fixed steps is of first order there.
 
+use crate::allowed::{GeometryError, positive};
 use crate::point::{Point, dot, minus, norm};
 
 /// Least angle by which the turn at a corner must stay below 180° [rad]. Nearer to 180° the corner counts as folded
@@ -72,16 +73,14 @@ struct Corner {
 }
 
 impl Polyline {
-    /// The wire through points [m], with corners of one radius [m].
-    pub(super) fn new(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, String> {
+    /// Through points [m], with corners of one radius [m].
+    pub(super) fn new(points: &[[f64; 3]], radius: f64, closed: bool) -> Result<Self, GeometryError> {
         let n = points.len();
         let least = if closed { 3 } else { 2 };
         if n < least {
-            return Err(format!("a wire of straight pieces needs {least} points, but has {n}"));
+            return Err(GeometryError::WirePoints { least, count: n });
         }
-        if !(radius > 0.0 && radius.is_finite()) {
-            return Err(format!("the radius of a wire's corners must be positive and finite, but is {radius}"));
-        }
+        positive("the radius of a wire's corners", radius)?;
         let count = if closed { n } else { n - 1 };
         let mut sides = Vec::new();
         for i in 0..count {
@@ -89,7 +88,7 @@ impl Polyline {
             let square = dot(way, way);
             if !square.is_normal() {
                 let next = (i + 1) % n;
-                return Err(format!("points[{i}] and points[{next}] are at one place, or too far apart to measure"));
+                return Err(GeometryError::WireNeighbours { points: [i, next] });
             }
             let length = square.sqrt();
             sides.push((way.map(|x| x / length), length));
@@ -198,18 +197,18 @@ impl PolylineForm {
     }
 }
 
-/// The corner from e to f at a point; `None` if the wire goes on straight.
-fn corner(e: [f64; 3], f: [f64; 3], point: usize) -> Result<Option<Corner>, String> {
+/// The corner from e to f at a point; `None` where the wire goes on straight.
+fn corner(e: [f64; 3], f: [f64; 3], point: usize) -> Result<Option<Corner>, GeometryError> {
     let (diff, sum) = (minus(e, f), std::array::from_fn(|k| e[k] + f[k]));
     let (sine, cosine) = (norm(diff), norm(sum));
     if cosine <= FOLD {
-        return Err(format!("the wire folds back by 180° at points[{point}], where no arc turns it"));
+        return Err(GeometryError::WireFolds { point });
     }
     Ok((sine > 0.0).then_some(Corner { diff, sum, tangent: sine / cosine }))
 }
 
 /// `Ok` if every straight piece is long enough for the arcs at its ends.
-fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Result<(), String> {
+fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Result<(), GeometryError> {
     let tangent = |i: usize| corners[i % corners.len()].as_ref().map_or(0.0, |corner| corner.tangent);
     // The largest radius that fits, and the corner that takes the most of the piece that limits it.
     let mut tightest = (f64::INFINITY, 0);
@@ -224,10 +223,7 @@ fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Re
     if radius <= room * (1.0 + ROUNDING) {
         return Ok(());
     }
-    let room = short(room);
-    Err(format!(
-        "a radius of {radius} m is too large for the corner at points[{point}]: the largest that fits is {room} m"
-    ))
+    Err(GeometryError::WireRadius { radius, point, largest: short(room) })
 }
 
 /// The radius rounded down to five digits, so that it still fits.
@@ -323,7 +319,7 @@ mod tests {
     #[test]
     fn what_cannot_be_bent_is_refused_with_the_place() {
         let refused = |points: &[[f64; 3]], radius: f64, closed: bool, words: &str| {
-            let error = Polyline::new(points, radius, closed).unwrap_err();
+            let error = Polyline::new(points, radius, closed).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
         };
         let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];

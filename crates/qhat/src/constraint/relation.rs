@@ -6,6 +6,7 @@
 //! J = w_i I on each particle,   γ = −p̈,   C_t = −ṗ
 //! ```
 
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
@@ -78,19 +79,19 @@ impl Smooth for Relation {
         extent * self.terms.iter().fold(0.0, |most: f64, (_, weight)| most.max(weight.abs()))
     }
 
-    fn check(&self) -> Result<(), String> {
-        for (i, (particle, weight)) in self.terms.iter().enumerate() {
+    fn check(&self) -> Result<(), ConstraintError> {
+        for (term, (particle, weight)) in self.terms.iter().enumerate() {
             finite("a weight", *weight)?;
             if *weight == 0.0 {
-                return Err("a weight of 0 says nothing; leave the particle out".into());
+                return Err(ConstraintError::NoWeight { term });
             }
-            if self.terms[..i].iter().any(|(other, _)| other == particle) {
-                return Err("each particle can have one weight; add them up".into());
+            if self.terms[..term].iter().any(|(other, _)| other == particle) {
+                return Err(ConstraintError::TwoWeights { term });
             }
         }
         if self.terms.is_empty() {
-            return Err("a relation needs particles".into());
+            return Err(ConstraintError::NoTerms);
         }
-        self.point.iter().try_for_each(|point| point.check("the point of a relation"))
+        self.point.iter().try_for_each(|point| Ok(point.check("the point of a relation")?))
     }
 }

@@ -11,7 +11,7 @@
 //! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`). Nothing
 //! else is derived by hand.
 
-use super::{Formulation, Holds, RowWriter};
+use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
 use crate::number::{Dual, Number};
 use crate::point::{Motion, dot};
@@ -43,13 +43,13 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// `Ok` if the constraint can be used in d dimensions; else the reason, in words.
-    fn fits(&self, dimension: usize) -> Result<(), String> {
-        Self::ONLY_IN.map_or(Ok(()), |only| crate::allowed::only_in(only, dimension))
+    /// Why the constraint has no meaning in d dimensions, in words.
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
     }
 
-    /// `Ok` if the numbers of the constraint are allowed; else the reason, in words.
-    fn check(&self) -> Result<(), String>;
+    /// What is wrong with the numbers of the constraint, in words.
+    fn check(&self) -> Result<(), ConstraintError>;
 }
 
 /// The arguments of a row: the positions of the particles of its constraint [m] and t [s]. Both carry their derivative
@@ -204,11 +204,11 @@ impl<S: Smooth> Holds for S {
         self.clone()
     }
 
-    fn fits(&self, dimension: usize) -> Result<(), String> {
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Smooth::fits(self, dimension)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         Smooth::check(self)
     }
 }

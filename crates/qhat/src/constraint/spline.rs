@@ -10,6 +10,8 @@
 //! its first point. The matrix of the closed curve has two further entries β in its corners. They are split off as a
 //! matrix of rank one (Sherman and Morrison). Source: de Boor, A Practical Guide to Splines, chapter IV.
 
+use crate::allowed::GeometryError;
+
 /// A cubic spline.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spline {
@@ -21,21 +23,21 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// The spline through points [m]: at least two, or three for a closed spline. Neighbours must differ.
-    pub(super) fn new(points: &[[f64; 3]], closed: bool) -> Result<Self, String> {
+    /// Through two points [m] or more, three or more of a closed spline, no two neighbours the same.
+    pub(super) fn new(points: &[[f64; 3]], closed: bool) -> Result<Self, GeometryError> {
         let mut points = points.to_vec();
         let least = if closed { 3 } else { 2 };
         if points.len() < least {
-            return Err(format!("a curve needs {least} points, but has {}", points.len()));
+            return Err(GeometryError::CurvePoints { least, count: points.len() });
         }
         if closed {
             points.push(points[0]);
         }
         let mut knots = vec![0.0];
-        for pair in points.windows(2) {
+        for (point, pair) in points.windows(2).enumerate() {
             let way: f64 = (0..3).map(|k| pair[1][k] - pair[0][k]).map(|x| x * x).sum();
             if !way.is_normal() {
-                return Err("two neighbouring points of a curve are at one place, or too far apart to measure".into());
+                return Err(GeometryError::CurveNeighbours { point });
             }
             knots.push(knots[knots.len() - 1] + way.sqrt());
         }

@@ -12,6 +12,7 @@
 //! on the point that positions count from. Fails where all corners lie on one line or at one point, because the
 //! gradient vanishes there.
 
+use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, cross, dot, minus, plus, raised};
@@ -88,19 +89,19 @@ impl Smooth for Volume {
         self.volume.value(0.0).abs().max(extent * extent * extent)
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ConstraintError> {
         let mut sides = HashSet::new();
-        for &[a, b, c] in &self.faces {
+        for (face, &[a, b, c]) in self.faces.iter().enumerate() {
             if a == b || b == c || c == a {
-                return Err("a face has three different corners".into());
+                return Err(ConstraintError::FaceCorners { face });
             }
             if ![[a, b], [b, c], [c, a]].into_iter().all(|side| sides.insert(side)) {
-                return Err("two faces run along one side in the same direction: turn one of them round".into());
+                return Err(ConstraintError::FaceTurned { face });
             }
         }
         if self.faces.is_empty() || sides.iter().any(|&[a, b]| !sides.contains(&[b, a])) {
-            return Err("the surface is not closed: each side needs a face on either side of it".into());
+            return Err(ConstraintError::NotClosed);
         }
-        self.volume.check("a volume")
+        Ok(self.volume.check("a volume")?)
     }
 }

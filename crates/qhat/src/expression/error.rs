@@ -25,6 +25,38 @@ impl ExpressionError {
     }
 }
 
+/// Why a parameter of expressions is refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ParameterError {
+    /// The name is no word.
+    #[error("`{name}` is not a name: a name begins with a letter or `_` and goes on with letters, digits or `_`")]
+    NotAName {
+        /// The name.
+        name: String,
+    },
+    /// The name stands for time or a constant.
+    #[error("`{name}` already has a meaning in expressions: give the parameter another name")]
+    NameTaken {
+        /// The name.
+        name: String,
+    },
+    /// The name stands for a function.
+    #[error("`{name}` is a function: give the parameter another name")]
+    Function {
+        /// The name.
+        name: String,
+    },
+    /// The number is infinite or not a number.
+    #[error("the parameter `{name}` must be a finite number, but is {value}")]
+    NotFinite {
+        /// The name.
+        name: String,
+        /// The number.
+        value: f64,
+    },
+}
+
 /// The longest quotation [letters]; a longer one no longer reads as a name.
 const QUOTED: usize = 40;
 

@@ -32,7 +32,7 @@ mod syntax;
 mod tape;
 mod token;
 
-pub use error::ExpressionError;
+pub use error::{ExpressionError, ParameterError};
 pub use evaluate::Jet;
 pub use scope::{Purpose, Scope, check_parameter};
 

@@ -1,5 +1,6 @@
 //! Scope: the names that an expression may use, and their meaning.
 
+use super::error::ParameterError;
 use super::functions::FUNCTIONS;
 use super::token::is_name;
 use crate::space::{Dimension, ParticleId};
@@ -48,21 +49,23 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// `Ok` if a parameter may have this name and this value.
-pub fn check_parameter(name: &str, value: f64) -> Result<(), String> {
+/// `Ok` if a parameter can have this name and this number.
+///
+/// # Errors
+/// A name that is no word, or that has a meaning already; a number that is not finite.
+pub fn check_parameter(name: &str, value: f64) -> Result<(), ParameterError> {
+    let name_of = || name.to_owned();
     if !is_name(name) {
-        return Err(format!(
-            "`{name}` is not a name: a name begins with a letter or `_` and goes on with letters, digits or `_`"
-        ));
+        return Err(ParameterError::NotAName { name: name_of() });
     }
     if CONSTANTS.iter().any(|(constant, _)| *constant == name) || name == "t" {
-        return Err(format!("`{name}` already has a meaning in expressions: give the parameter another name"));
+        return Err(ParameterError::NameTaken { name: name_of() });
     }
     if FUNCTIONS.iter().any(|function| function.name == name) {
-        return Err(format!("`{name}` is a function: give the parameter another name"));
+        return Err(ParameterError::Function { name: name_of() });
     }
     if !value.is_finite() {
-        return Err(format!("the parameter `{name}` must be a finite number, but is {value}"));
+        return Err(ParameterError::NotFinite { name: name_of(), value });
     }
     Ok(())
 }

@@ -11,7 +11,7 @@
 //! changes only the tension of the rod.
 
 use super::line::Line;
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::finite;
 use crate::point::{Motion, add, scaled};
 use crate::space::ParticleId;
@@ -86,11 +86,11 @@ impl Acts for Actuator {
         vec![self.a, self.b]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         finite("the push of an actuator", self.push)?;
         finite("the amplitude of an actuator", self.amplitude)?;
         finite("the angular frequency of an actuator", self.angular_frequency)?;
         finite("the phase of an actuator", self.phase)?;
-        if self.a == self.b { Err("an actuator needs two different particles".into()) } else { Ok(()) }
+        if self.a == self.b { Err(ForceError::SameEnds { what: "an actuator" }) } else { Ok(()) }
     }
 }

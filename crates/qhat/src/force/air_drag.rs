@@ -11,8 +11,8 @@
 //! w₀ is the wind at the origin and G [1/s] its gradient. A ball of radius R in a gas of density ϱ has c₂ = ½ c_w ϱ π
 //! R² (c_w ≈ 0.47). At u = 0 there is no drag and |u| has no gradient; uuᵀ/|u| is taken as zero there.
 
-use super::{Acts, Dependence};
-use crate::allowed::{finite, not_negative};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::{all_finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer, plus};
 use crate::point::{Motion, Point, add, dot, first, norm, scaled};
 use crate::space::ParticleId;
@@ -96,10 +96,10 @@ impl Acts for AirDrag {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         not_negative("the linear drag coefficient", self.linear)?;
         not_negative("the quadratic drag coefficient", self.quadratic)?;
-        self.wind.iter().try_for_each(|&component| finite("the wind", component))?;
-        self.gradient.iter().flatten().try_for_each(|&entry| finite("the gradient of the wind", entry))
+        all_finite("the wind", &self.wind)?;
+        Ok(all_finite("the gradient of the wind", self.gradient.as_flattened())?)
     }
 }

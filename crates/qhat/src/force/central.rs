@@ -2,8 +2,8 @@
 //! with d = x − p. For gravity towards p, s = −μ m with μ = G M [m³/s²].
 
 use super::inverse_square::Law;
-use super::{Acts, Dependence};
-use crate::allowed::finite;
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::all_finite;
 use crate::point::{Motion, Point, add, first, minus};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -72,8 +72,8 @@ impl Acts for CentralForce {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         self.law().check()?;
-        self.center.iter().try_for_each(|&component| finite("the centre of a central force", component))
+        Ok(all_finite("the centre of a central force", &self.center)?)
     }
 }

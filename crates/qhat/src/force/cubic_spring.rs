@@ -12,7 +12,7 @@
 //! At |L| = 0 the direction is undefined, and the force is zero.
 
 use super::line::Line;
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
 use crate::linalg::block::outer;
 use crate::point::{Motion, add, minus, norm, scaled};
@@ -99,11 +99,11 @@ impl Acts for CubicSpring {
         vec![self.a, self.b]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         finite("the stiffness of a cubic spring", self.stiffness)?;
         finite("the cubic stiffness of a spring", self.cubic)?;
         not_negative("the damping of a cubic spring", self.damping)?;
         not_negative("the rest length of a cubic spring", self.rest)?;
-        if self.a == self.b { Err("a cubic spring needs two different particles".into()) } else { Ok(()) }
+        if self.a == self.b { Err(ForceError::SameEnds { what: "a cubic spring" }) } else { Ok(()) }
     }
 }

@@ -8,7 +8,7 @@
 //! The sign of the stiffness is not known. Where V or a derivative is not finite, the step ends in `StepError`.
 
 use super::expression::{largest, sum_of_sizes};
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::hyper::{Hyper, gradient, hessian_blocks, jet};
 use crate::linalg::block::{Block, transposed};
 use crate::point::{Motion, add};
@@ -158,13 +158,13 @@ impl Acts for CustomForce {
         self.particles.to_vec()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         let named = &self.particles;
         if named.is_empty() {
-            return Err("a custom force names no particle, so that it pulls nothing".into());
+            return Err(ForceError::CustomWithoutParticles);
         }
         match (1..named.len()).any(|i| named[..i].contains(&named[i])) {
-            true => Err("a custom force needs different particles, but one is named twice".into()),
+            true => Err(ForceError::NamedTwice { what: "a custom force" }),
             false => Ok(()),
         }
     }

@@ -5,7 +5,7 @@
 //! power = −kd Σ v_i · v_i        [W]
 //! ```
 
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::not_negative;
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, scaled};
@@ -65,7 +65,7 @@ impl Acts for Drag {
         Vec::new()
     }
 
-    fn check(&self) -> Result<(), String> {
-        not_negative("the drag coefficient", self.coefficient)
+    fn check(&self) -> Result<(), ForceError> {
+        Ok(not_negative("the drag coefficient", self.coefficient)?)
     }
 }

@@ -21,7 +21,7 @@
 //!
 //! The sign of the stiffness is not known for either. If a number is not finite, the step ends in `StepError`.
 
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::expression::{Expression, LONGEST_GRADIENT, MAX_NAMES};
 use crate::linalg::block::{Block, plus, transposed, zero};
 use crate::point::{Motion, Point, add, dot};
@@ -123,13 +123,10 @@ impl Acts for ExpressionForce {
         particles
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         let d = self.components.len();
         match self.components.iter().find(|component| component.dimension() != d) {
-            Some(other) => Err(format!(
-                "a force has an expression for each dimension; {d} are given, but one is written for {}",
-                other.dimension()
-            )),
+            Some(other) => Err(ForceError::Components { count: d, written: other.dimension() }),
             None => Ok(()),
         }
     }
@@ -194,12 +191,12 @@ impl Acts for ExpressionPotential {
         self.potential.particles().to_vec()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         if self.potential.uses_velocities() {
-            return Err("a potential may depend on positions and time only, not on velocities".into());
+            return Err(ForceError::DependsOnVelocities);
         }
         if self.potential.particles().is_empty() {
-            return Err("the potential depends on no particle, so that it pulls nothing".into());
+            return Err(ForceError::DependsOnNothing);
         }
         Ok(())
     }

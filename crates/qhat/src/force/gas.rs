@@ -15,7 +15,8 @@
 //! method rejects the substep.
 
 use super::pressure::Facet;
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::positive;
 use crate::linalg::block::outer;
 use crate::point::{Motion, Point, add, norm};
 use crate::space::{Dimension, ParticleId};
@@ -82,18 +83,15 @@ impl Gas {
     /// `Ok` if the numbers and the facets are allowed.
     ///
     /// # Errors
-    /// A text that names the number or the facet that is not allowed.
-    pub fn check(&self) -> Result<(), String> {
-        for (what, number) in [("pressure", self.pressure), ("exponent", self.exponent)] {
-            if !(number > 0.0 && number.is_finite()) {
-                return Err(format!("the {what} of a gas must be positive and finite, but is {number}"));
-            }
-        }
+    /// In words: what is wrong with the numbers or the facets.
+    pub fn check(&self) -> Result<(), ForceError> {
+        positive("the pressure of a gas", self.pressure)?;
+        positive("the exponent of a gas", self.exponent)?;
         if !(self.content > 0.0 && self.content.is_finite()) {
-            return Err(format!("a gas must fill more than nothing at the start, but fills {}", self.content));
+            return Err(ForceError::GasContent { content: self.content });
         }
         if self.particles.len() > MOST {
-            return Err(format!("a gas may have at most {MOST} particles, but has {}", self.particles.len()));
+            return Err(ForceError::GasParticles { most: MOST, count: self.particles.len() });
         }
         self.facets.iter().try_for_each(Facet::check)
     }
@@ -178,7 +176,7 @@ impl Acts for Gas {
         self.particles.clone()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         self.check()
     }
 }

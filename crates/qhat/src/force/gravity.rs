@@ -5,9 +5,9 @@
 //! V   = −Σ m_i g · x_i           [J]
 //! ```
 
-use super::{Acts, Dependence};
-use crate::allowed::finite;
-use crate::point::{Motion, add, dot, first, scaled};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::all_finite;
+use crate::point::{Motion, Vector, add, dot, first, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
@@ -16,6 +16,13 @@ use crate::stiffness::Stiffness;
 pub struct Gravity {
     /// g [m/s²]; the third component is ignored in two dimensions.
     pub acceleration: [f64; 3],
+}
+
+impl Gravity {
+    /// Uniform gravity of an acceleration [m/s²].
+    pub fn new(acceleration: impl Into<Vector>) -> Self {
+        Gravity { acceleration: acceleration.into().0 }
+    }
 }
 
 impl Acts for Gravity {
@@ -53,7 +60,7 @@ impl Acts for Gravity {
         Vec::new()
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.acceleration.iter().try_for_each(|&component| finite("gravity", component))
+    fn check(&self) -> Result<(), ForceError> {
+        Ok(all_finite("gravity", &self.acceleration)?)
     }
 }

@@ -5,8 +5,8 @@
 //! power = F · v                  [W], of either sign; the force has no potential
 //! ```
 
-use super::{Acts, Dependence};
-use crate::allowed::finite;
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::{all_finite, finite};
 use crate::point::{Motion, Point, add, dot, first, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -64,9 +64,9 @@ impl Acts for HarmonicForce {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.amplitude.iter().try_for_each(|&component| finite("the amplitude of a harmonic force", component))?;
+    fn check(&self) -> Result<(), ForceError> {
+        all_finite("the amplitude of a harmonic force", &self.amplitude)?;
         finite("the angular frequency of a harmonic force", self.angular_frequency)?;
-        finite("the phase of a harmonic force", self.phase)
+        Ok(finite("the phase of a harmonic force", self.phase)?)
     }
 }

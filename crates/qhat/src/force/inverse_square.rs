@@ -13,7 +13,7 @@
 //! has no direction: the force is taken as zero there, and V is not finite. The eigenvalues of the stiffness are
 //! −s/ρ³ and s (3|d|²/ρ² − 1)/ρ³, neither above 2|s|/ρ³.
 
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer};
 use crate::point::{Motion, Point, add, dot, minus, scaled};
@@ -72,9 +72,9 @@ impl Law {
         Some([diagonal(-across), outer(3.0 * across / (rho * rho), d, d)])
     }
 
-    pub(super) fn check(self) -> Result<(), String> {
+    pub(super) fn check(self) -> Result<(), ForceError> {
         finite("the strength of an inverse-square force", self.s)?;
-        not_negative("a softening length", self.epsilon)
+        Ok(not_negative("a softening length", self.epsilon)?)
     }
 }
 
@@ -139,8 +139,8 @@ impl Acts for InverseSquare {
         vec![self.a, self.b]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         self.law().check()?;
-        if self.a == self.b { Err("an inverse-square force needs two different particles".into()) } else { Ok(()) }
+        if self.a == self.b { Err(ForceError::SameEnds { what: "an inverse-square force" }) } else { Ok(()) }
     }
 }

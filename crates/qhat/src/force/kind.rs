@@ -1,5 +1,6 @@
 //! Kind: the questions that every kind of force answers, and the types of the answers.
 
+use super::ForceError;
 use crate::point::Motion;
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -39,8 +40,8 @@ pub(crate) trait Acts {
     /// The particles that the force names, each once; empty if it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// `Ok` if the numbers of the force are allowed; else the reason, in words.
-    fn check(&self) -> Result<(), String>;
+    /// What is wrong with the numbers of the force, in words.
+    fn check(&self) -> Result<(), ForceError>;
 }
 
 /// The arguments that a force depends on.

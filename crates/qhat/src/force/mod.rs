@@ -9,6 +9,7 @@ mod central;
 mod cubic_spring;
 mod custom;
 mod drag;
+mod error;
 mod expression;
 mod gas;
 mod gravity;
@@ -30,6 +31,7 @@ pub use central::CentralForce;
 pub use cubic_spring::CubicSpring;
 pub use custom::{CustomForce, CustomPotential};
 pub use drag::Drag;
+pub use error::ForceError;
 pub use expression::{ExpressionForce, ExpressionPotential};
 pub use gas::Gas;
 pub use gravity::Gravity;
@@ -50,11 +52,22 @@ macro_rules! forces {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
         /// Any force; one variant for each kind.
         #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Force { $($(#[$doc])* $kind($kind),)* }
 
         $(impl From<$kind> for Force {
             fn from(force: $kind) -> Self { Force::$kind(force) }
         })*
+
+        impl Force {
+            /// The names of all kinds: those of the variants.
+            pub const KINDS: &'static [&'static str] = &[$(stringify!($kind)),*];
+
+            /// The name of its kind, one of [`Force::KINDS`].
+            pub fn kind(&self) -> &'static str {
+                match self { $(Force::$kind(_) => stringify!($kind),)* }
+            }
+        }
 
         impl Acts for Force {
             fn add<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64], Q: &mut [f64]) {
@@ -86,7 +99,7 @@ macro_rules! forces {
             fn particles(&self) -> Vec<ParticleId> {
                 match self { $(Force::$kind(force) => force.particles(),)* }
             }
-            fn check(&self) -> Result<(), String> {
+            fn check(&self) -> Result<(), ForceError> {
                 match self { $(Force::$kind(force) => force.check(),)* }
             }
         }

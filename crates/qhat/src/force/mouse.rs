@@ -9,8 +9,8 @@
 //! p moves between steps and never within a step. The work of moving p is the jump of V, which `Simulation` adds to its
 //! account of energy.
 
-use super::{Acts, Dependence};
-use crate::allowed::{finite, not_negative};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::{all_finite, not_negative};
 use crate::linalg::block::diagonal;
 use crate::point::{Motion, add, dot, first, minus, scaled};
 use crate::space::ParticleId;
@@ -68,9 +68,9 @@ impl Acts for MouseSpring {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         not_negative("the stiffness of the mouse spring", self.stiffness)?;
         not_negative("the damping of the mouse spring", self.damping)?;
-        self.target.iter().try_for_each(|&component| finite("the target of the mouse spring", component))
+        Ok(all_finite("the target of the mouse spring", &self.target)?)
     }
 }

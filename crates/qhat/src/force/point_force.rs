@@ -5,9 +5,9 @@
 //! V = −f · x                     [J]
 //! ```
 
-use super::{Acts, Dependence};
-use crate::allowed::finite;
-use crate::point::{Motion, add, dot, first};
+use super::{Acts, Dependence, ForceError};
+use crate::allowed::all_finite;
+use crate::point::{Motion, Vector, add, dot, first};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
@@ -18,6 +18,13 @@ pub struct PointForce {
     pub particle: ParticleId,
     /// f [N]; the third component is ignored in two dimensions.
     pub force: [f64; 3],
+}
+
+impl PointForce {
+    /// A constant force [N] on a particle.
+    pub fn new(particle: ParticleId, force: impl Into<Vector>) -> Self {
+        PointForce { particle, force: force.into().0 }
+    }
 }
 
 impl Acts for PointForce {
@@ -51,7 +58,7 @@ impl Acts for PointForce {
         vec![self.particle]
     }
 
-    fn check(&self) -> Result<(), String> {
-        self.force.iter().try_for_each(|&component| finite("a point force", component))
+    fn check(&self) -> Result<(), ForceError> {
+        Ok(all_finite("a point force", &self.force)?)
     }
 }

@@ -13,7 +13,7 @@
 //! chord of its two neighbours, turned outward. p is in N/m in the plane (a pressure times a depth) and in Pa in space.
 //! An edge in space acts in the x–y plane. The force of a triangle in the plane is zero.
 
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::finite;
 use crate::linalg::block::Block;
 use crate::number::{cross, raised};
@@ -130,11 +130,11 @@ impl Facet {
         }
     }
 
-    /// `Ok` if the corners are different particles.
-    pub(super) fn check(&self) -> Result<(), String> {
+    /// `Ok` if its corners are different particles.
+    pub(super) fn check(&self) -> Result<(), ForceError> {
         let corners = self.corners();
         let repeats = corners.iter().enumerate().any(|(i, id)| corners[..i].contains(id));
-        if repeats { Err("a facet under pressure needs different particles at its corners".into()) } else { Ok(()) }
+        if repeats { Err(ForceError::FacetCorners) } else { Ok(()) }
     }
 }
 
@@ -184,7 +184,7 @@ impl Acts for Pressure {
         self.facet.corners().to_vec()
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         finite("a pressure", self.pressure)?;
         self.facet.check()
     }

@@ -12,7 +12,7 @@
 //! direction is undefined, and the force is zero, which is exact for r = 0.
 
 use super::line::Line;
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::not_negative;
 use crate::linalg::block::{diagonal, outer};
 use crate::point::{Motion, add, minus, norm, scaled};
@@ -91,10 +91,10 @@ impl Acts for Spring {
         vec![self.a, self.b]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         not_negative("the stiffness of a spring", self.stiffness)?;
         not_negative("the damping of a spring", self.damping)?;
         not_negative("the rest length of a spring", self.rest)?;
-        if self.a == self.b { Err("a spring needs two different particles".into()) } else { Ok(()) }
+        if self.a == self.b { Err(ForceError::SameEnds { what: "a spring" }) } else { Ok(()) }
     }
 }

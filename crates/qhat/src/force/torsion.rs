@@ -28,7 +28,7 @@
 //! at it. An arm of length zero has no angle: the force is zero, and V is the value at θ = 0. Near this position the
 //! force grows as 1/|u|.
 
-use super::{Acts, Dependence};
+use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
 use crate::linalg::block::{Block, diagonal, outer, plus, zero};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
@@ -240,14 +240,14 @@ impl Acts for TorsionSpring {
         vec![self.a, self.b, self.c]
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), ForceError> {
         not_negative("the stiffness of a torsion spring", self.stiffness)?;
         not_negative("the damping of a torsion spring", self.damping)?;
         finite("the rest angle of a torsion spring", self.angle)?;
         if self.angle.abs() > PI {
-            return Err(format!("the rest angle of a torsion spring must be within π of zero, but is {}", self.angle));
+            return Err(ForceError::RestAngle { angle: self.angle });
         }
         let differ = self.a != self.b && self.b != self.c && self.c != self.a;
-        if differ { Ok(()) } else { Err("a torsion spring needs three different particles".into()) }
+        if differ { Ok(()) } else { Err(ForceError::TorsionParticles) }
     }
 }

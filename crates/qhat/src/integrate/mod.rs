@@ -23,6 +23,7 @@ mod implicit;
 mod projection;
 mod rattle;
 mod runge_kutta;
+mod watch;
 mod workspace;
 
 pub use workspace::Workspace;
@@ -63,6 +64,7 @@ pub(crate) fn step_for(
 ) -> Result<StepReport, StepError> {
     settings.check()?;
     check_switches(system, settings)?;
+    workspace.begin_watch(system, settings);
     let frame = &mut Frame { system, settings, workspace, length };
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
         Integrator::Euler => fixed::run::<D>(frame, state, fixed::euler::step::<D>),
@@ -80,7 +82,7 @@ pub(crate) fn step_for(
         Integrator::Auto | Integrator::Rattle => report.integrator,
         own => own,
     };
-    Ok(StepReport { integrator, ..report })
+    Ok(StepReport { integrator, max_tension: workspace.largest_tension(), ..report })
 }
 
 /// Refuses an integrator that locates no events, for a system that has some.

@@ -94,6 +94,7 @@ pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
     adaptive::check_length(frame.length)?;
     let (start, length, factorizations) = (state.t, frame.length, frame.factorizations());
     let mut substeps = Substeps::new(frame, state);
+    substeps.watch = frame.workspace.watch.take();
     let carry = state.carry.take();
     let lambda = adaptive::begin::<D>(frame, state, carry);
     frame.workspace.equation.solver.memory.forget();
@@ -101,6 +102,7 @@ pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
         RattleStepper::<D> { system: frame.system, settings: frame.settings, workspace: frame.workspace, lambda };
     let end = substeps.run(&mut stepper, state);
     let lambda = stepper.lambda;
+    frame.workspace.watch = substeps.watch.take();
     substeps.report.factorizations = frame.factorizations() - factorizations;
     substeps.report.integrator = Integrator::Rattle;
     match end {

@@ -1,6 +1,7 @@
 //! Workspace: the arrays that steps write in, and the equation at a state.
 
 use super::runge_kutta::Stages;
+use super::watch::TensionWatch;
 use super::{implicit, rattle};
 use crate::chains::Chains;
 use crate::multiplier::{Equation, SolveFor};
@@ -24,6 +25,9 @@ pub struct Workspace {
     pub(super) chains: Option<Chains>,
     pub(super) rattle: rattle::Scratch,
     pub(super) implicit: Option<Box<implicit::Scratch>>,
+    /// Whether the largest tension of every frame is recorded, and the record of the frame at hand.
+    pub(super) is_watched: bool,
+    pub(super) watch: Option<TensionWatch>,
 }
 
 impl Workspace {
@@ -39,6 +43,8 @@ impl Workspace {
             chains: None,
             rattle: rattle::Scratch::new(system),
             implicit: None,
+            is_watched: false,
+            watch: None,
         }
     }
 
@@ -103,11 +109,13 @@ mod tests {
         let mut builder = System::builder(Dimension::Two);
         let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [0.0, -1.0]).with_mass(2.0));
-        builder.constraint("rope", Limits::rope(hook, bob, 1.0)).force(Gravity { acceleration: [0.0, -9.81, 0.0] });
+        builder
+            .with_constraint("rope", Limits::rope(hook, bob, 1.0))
+            .force(Gravity { acceleration: [0.0, -9.81, 0.0] });
         let (system, mut taut) = builder.build().unwrap();
         let mut workspace = Workspace::new(&system);
         project(&system, &mut taut, &Settings::default(), &mut workspace).unwrap();
-        let slack = taut.at(taut.positions().to_vec(), taut.velocities().to_vec());
+        let slack = taut.with_motion(taut.positions().to_vec(), taut.velocities().to_vec());
         let tension = |workspace: &mut Workspace, state: &State| workspace.tension(&system, state, &Feedback::NONE);
         // The rope carries m g, to a few roundings of numbers of size 20.
         assert!((tension(&mut workspace, &taut)[0] - 2.0 * 9.81).abs() < 1e-13);

@@ -9,6 +9,7 @@ use super::ordering::minimum_degree;
 
 /// Shape of the graph of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ComponentKind {
     /// A chain.
     Path,
@@ -20,6 +21,7 @@ pub enum ComponentKind {
 
 /// How a component is factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FactorMethod {
     /// The whole matrix as a dense matrix, in the order given.
     Dense,

@@ -84,6 +84,16 @@ pub struct SymmetricMatrix {
     pub(crate) values: Vec<f64>,
 }
 
+/// A list of rows of the lower triangle, each a list of pairs: a column and its number.
+#[cfg(feature = "serde")]
+impl serde::Serialize for SymmetricMatrix {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Pattern { start, column } = &self.pattern;
+        let row = |i: usize| (start[i]..start[i + 1]).map(|slot| (column[slot], self.values[slot])).collect::<Vec<_>>();
+        serializer.collect_seq((0..self.order()).map(row))
+    }
+}
+
 impl SymmetricMatrix {
     /// Number of rows.
     pub fn order(&self) -> usize {

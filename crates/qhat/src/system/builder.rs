@@ -1,14 +1,13 @@
-//! What a System is made from, and the checks that it is one.
+//! The builder of a System: collects particles, constraints and forces, and checks them.
 
-use super::{Particle, System};
-use crate::constraint::Layout;
-use crate::constraint::{Constraint, Holds};
-use crate::error::BuildError;
-use crate::force::{Acts, Force};
+use super::{BuildError, Particle, ParticleError, System};
+use crate::constraint::{Constraint, ConstraintError, Holds, Layout};
+use crate::expression::{Expression, ExpressionError, Purpose, Scope};
+use crate::force::{Acts, Force, ForceError};
 use crate::modes::Modes;
 use crate::point::{block, minus, norm};
 use crate::settings::Feedback;
-use crate::space::{Dimension, ParticleId, in_dimension};
+use crate::space::{ConstraintId, Dimension, ForceId, ParticleId, in_dimension};
 use crate::state::State;
 use crate::structure::{Contacts, MatrixStructure};
 use std::collections::HashSet;
@@ -22,7 +21,7 @@ pub struct SystemBuilder {
     dimension: Dimension,
     particles: Vec<Particle>,
     constraints: Vec<(String, Constraint)>,
-    forces: Vec<Force>,
+    forces: Vec<(Option<String>, Force)>,
     feedback: Feedback,
 }
 
@@ -59,16 +58,57 @@ impl SystemBuilder {
         &self.particles[particle.0].name
     }
 
-    /// Adds a constraint under a name that reports will use.
-    pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> &mut Self {
+    /// Adds a constraint under a name, which reports use and which no other constraint has.
+    pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> ConstraintId {
         self.constraints.push((name.into(), constraint.into()));
-        self
+        ConstraintId(self.constraints.len() - 1)
     }
 
     /// Adds a force.
-    pub fn force(&mut self, force: impl Into<Force>) -> &mut Self {
-        self.forces.push(force.into());
+    pub fn force(&mut self, force: impl Into<Force>) -> ForceId {
+        self.add_force(None, force.into())
+    }
+
+    /// Adds a force under a name, by which [`System::force`] finds it and which no other force has.
+    pub fn named_force(&mut self, name: impl Into<String>, force: impl Into<Force>) -> ForceId {
+        self.add_force(Some(name.into()), force.into())
+    }
+
+    fn add_force(&mut self, name: Option<String>, force: Force) -> ForceId {
+        self.forces.push((name, force));
+        ForceId(self.forces.len() - 1)
+    }
+
+    /// Adds a particle, for a chain of calls; [`SystemBuilder::particle`] gives its id.
+    pub fn with_particle(&mut self, particle: Particle) -> &mut Self {
+        self.particle(particle);
         self
+    }
+
+    /// Adds a constraint, for a chain of calls; [`SystemBuilder::constraint`] gives its id.
+    pub fn with_constraint(&mut self, name: impl Into<String>, constraint: impl Into<Constraint>) -> &mut Self {
+        self.constraint(name, constraint);
+        self
+    }
+
+    /// Adds a force, for a chain of calls; [`SystemBuilder::force`] gives its id.
+    pub fn with_force(&mut self, force: impl Into<Force>) -> &mut Self {
+        self.force(force);
+        self
+    }
+
+    /// The id of the particle at a place in the order of addition, from 0.
+    pub fn particle_at(&self, index: usize) -> Option<ParticleId> {
+        (index < self.particles.len()).then_some(ParticleId(index))
+    }
+
+    /// An expression in the names of the particles that were added so far.
+    ///
+    /// # Errors
+    /// As [`Expression::parse`].
+    pub fn expression(&self, purpose: Purpose, text: &str) -> Result<Expression, ExpressionError> {
+        let find = |name: &str| self.particles.iter().position(|particle| particle.name == name).map(ParticleId);
+        Expression::parse(text, &Scope::new(purpose, self.dimension, &find))
     }
 
     /// Sets ks, kd, diagonal drag and elasticity (all off by default).
@@ -77,12 +117,23 @@ impl SystemBuilder {
         self
     }
 
-    /// The system and the state it starts from.
+    /// The system and the state it starts from. The builder stays as it is, and can be changed and built again.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Gravity, Particle, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let (system, state) = builder
+    ///     .with_particle(Particle::at("stone", [0.0, 10.0]))
+    ///     .with_force(Gravity { acceleration: [0.0, -9.81, 0.0] })
+    ///     .build()?;
+    /// assert_eq!(system.particle("stone").map(|stone| stone.index()), Some(0));
+    /// # Ok::<(), qhat::BuildError>(())
+    /// ```
     ///
     /// # Errors
     /// A name used twice, a number that is not finite or not allowed, a particle of the wrong dimension or that does not
     /// exist, a fixed particle that moves, so many constraints so closely connected that their factor would not fit.
-    pub fn build(self) -> Result<(System, State), BuildError> {
+    pub fn build(&self) -> Result<(System, State), BuildError> {
         self.check()?;
         let q: Vec<f64> = self.particles.iter().flat_map(|particle| particle.position.iter().copied()).collect();
         let qd: Vec<f64> = self.particles.iter().flat_map(|particle| particle.velocity.iter().copied()).collect();
@@ -91,7 +142,7 @@ impl SystemBuilder {
             dimension: self.dimension,
             mass: self.particles.iter().map(|particle| particle.mass).collect(),
             inverse_mass: self.particles.iter().map(|p| if p.fixed { 0.0 } else { 1.0 / p.mass }).collect(),
-            particle_names: self.particles.into_iter().map(|particle| particle.name).collect(),
+            particle_names: self.particles.iter().map(|particle| particle.name.clone()).collect(),
             constraints: Vec::new(),
             row_names: Vec::new(),
             row_scale: Vec::new(),
@@ -99,13 +150,14 @@ impl SystemBuilder {
             layout: Layout::default(),
             matrix: MatrixStructure::default(),
             chains: None,
-            forces: self.forces,
+            forces: self.forces.iter().map(|(_, force)| force.clone()).collect(),
+            force_names: self.forces.iter().map(|(name, _)| name.clone()).collect(),
             compliant: Vec::new(),
             feedback: self.feedback,
             extent,
             contacts: Contacts::default(),
         };
-        system.set_constraints(self.constraints);
+        system.set_constraints(self.constraints.clone());
         let plan = system.plan_matrix();
         if plan.memory() > MEMORY_LIMIT {
             return Err(BuildError::TooLarge { memory: plan.memory(), limit: MEMORY_LIMIT });
@@ -118,45 +170,46 @@ impl SystemBuilder {
     fn check(&self) -> Result<(), BuildError> {
         let mut names = HashSet::new();
         for particle in &self.particles {
-            let wrong = |message: String| BuildError::Particle { name: particle.name.clone(), message };
-            if !names.insert(&particle.name) {
-                return Err(wrong("the name is used twice".into()));
-            }
-            let d = self.dimension.number();
-            if particle.position.len() != d || particle.velocity.len() != d {
-                return Err(wrong(format!("position and velocity must have {d} components")));
-            }
-            if !particle.position.iter().chain(&particle.velocity).all(|x| x.is_finite()) {
-                return Err(wrong("position and velocity must be finite numbers".into()));
-            }
-            if !(particle.mass.is_finite() && particle.mass > 0.0 && (1.0 / particle.mass).is_finite()) {
-                return Err(wrong(format!("the mass must be positive and finite, but is {:?} kg", particle.mass)));
-            }
-            if particle.fixed && particle.velocity.iter().any(|&v| v != 0.0) {
-                return Err(wrong("a fixed particle cannot have a velocity".into()));
-            }
+            let taken = if names.insert(&particle.name) { Ok(()) } else { Err(ParticleError::NameTaken) };
+            let refused = |reason| BuildError::Particle { name: particle.name.clone(), reason };
+            taken.and_then(|()| particle.check(self.dimension.number())).map_err(refused)?;
         }
-        let exists = |ids: Vec<ParticleId>| match ids.into_iter().find(|id| id.0 >= self.particles.len()) {
-            Some(id) => Err(format!("there is no particle number {}", id.0)),
-            None => Ok(()),
-        };
-        let fits = |wanted: Option<usize>| match wanted.filter(|d| *d != self.dimension.number()) {
-            Some(d) => Err(format!("it is written for {d} dimensions, but the system has {}", self.dimension.number())),
-            None => Ok(()),
-        };
+        let mut names = HashSet::new();
         for (name, constraint) in &self.constraints {
-            let outcome = exists(constraint.particles()).and_then(|()| constraint.fits(self.dimension.number()));
-            let outcome = outcome.and_then(|()| constraint.check());
-            outcome.map_err(|message| BuildError::Constraint { name: name.clone(), message })?;
+            let taken = if names.insert(name) { Ok(()) } else { Err(ConstraintError::NameTaken) };
+            let refused = |reason| BuildError::Constraint { name: name.clone(), reason };
+            taken.and_then(|()| self.check_constraint(constraint)).map_err(refused)?;
         }
-        for (index, force) in self.forces.iter().enumerate() {
-            let outcome = exists(force.particles()).and_then(|()| fits(force.dimension()));
-            let outcome = outcome.and_then(|()| force.check());
-            outcome.map_err(|message| BuildError::Force { index, message })?;
+        let mut names = HashSet::new();
+        for (index, (name, force)) in self.forces.iter().enumerate() {
+            let is_new = name.as_ref().is_none_or(|name| names.insert(name));
+            let taken = if is_new { Ok(()) } else { Err(ForceError::NameTaken) };
+            let fits = || check_force(force, self.dimension, self.particles.len());
+            taken.and_then(|()| fits()).map_err(|reason| BuildError::Force { index, reason })?;
         }
         self.feedback.check()?;
         Ok(())
     }
+
+    fn check_constraint(&self, constraint: &Constraint) -> Result<(), ConstraintError> {
+        if let Some(id) = constraint.particles().into_iter().find(|id| id.0 >= self.particles.len()) {
+            return Err(ConstraintError::NoParticle { particle: id.0 });
+        }
+        constraint.fits(self.dimension.number())?;
+        constraint.check()
+    }
+}
+
+/// `Ok` if a force can act in a system with so many dimensions and particles.
+pub(crate) fn check_force(force: &Force, dimension: Dimension, particles: usize) -> Result<(), ForceError> {
+    if let Some(id) = force.particles().into_iter().find(|id| id.0 >= particles) {
+        return Err(ForceError::NoParticle { particle: id.0 });
+    }
+    let dimension = dimension.number();
+    if let Some(wanted) = force.dimension().filter(|&wanted| wanted != dimension) {
+        return Err(ForceError::Dimension { wanted, dimension });
+    }
+    force.check()
 }
 
 /// The mean rod length, else the diagonal of the box around all particles, else 1 [m].

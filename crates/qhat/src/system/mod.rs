@@ -2,9 +2,13 @@
 //! the numbers of forces and feedback may.
 
 mod builder;
+mod error;
+mod lookup;
 mod particle;
 
 pub use builder::SystemBuilder;
+pub(crate) use builder::check_force;
+pub use error::{BuildError, ParticleError};
 pub use particle::Particle;
 
 use crate::constraint::Layout;
@@ -33,6 +37,8 @@ pub struct System {
     /// Its open chains, if it has nothing else.
     pub(crate) chains: Option<ChainPlan>,
     pub(crate) forces: Vec<Force>,
+    /// The names of the forces that the builder was given; forces that a simulation adds later have no place here.
+    pub(crate) force_names: Vec<Option<String>>,
     /// Constraints that give way, as forces.
     pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
@@ -125,7 +131,7 @@ impl System {
     /// use qhat::{ComponentKind, Dimension, Distance, FactorMethod, Particle, System};
     /// let mut builder = System::builder(Dimension::Two);
     /// let ends = [0.0, 1.0, 2.0].map(|x| builder.particle(Particle::at(format!("{x}"), [x, 0.0])));
-    /// builder.constraint("left", Distance::new(ends[0], ends[1], 1.0)).constraint("right", Distance::new(ends[1], ends[2], 1.0));
+    /// builder.with_constraint("left", Distance::new(ends[0], ends[1], 1.0)).constraint("right", Distance::new(ends[1], ends[2], 1.0));
     /// let (system, _) = builder.build()?;
     /// let [chain] = system.components() else { panic!("one chain") };
     /// assert_eq!((chain.kind, chain.rows, chain.method, chain.entries), (ComponentKind::Path, 2, FactorMethod::Dense, 3));
@@ -221,7 +227,7 @@ impl System {
     }
 
     /// One of them by its place among them.
-    pub(crate) fn force(&self, number: usize) -> &Force {
+    pub(crate) fn numbered_force(&self, number: usize) -> &Force {
         self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
     }
 

@@ -1,4 +1,6 @@
-//! A point mass and its number.
+//! A point mass.
+
+use super::ParticleError;
 
 /// A point mass, as it is handed to the builder.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +37,25 @@ impl Particle {
     /// The same, fixed where it is: W = 0.
     pub fn fixed(self) -> Self {
         Particle { fixed: true, ..self }
+    }
+
+    /// `Ok` if it can be in d dimensions.
+    pub(super) fn check(&self, dimension: usize) -> Result<(), ParticleError> {
+        for (what, components) in [("position", &self.position), ("velocity", &self.velocity)] {
+            if components.len() != dimension {
+                return Err(ParticleError::Components { what, dimension, count: components.len() });
+            }
+        }
+        if !self.position.iter().chain(&self.velocity).all(|x| x.is_finite()) {
+            return Err(ParticleError::NotFinite);
+        }
+        if !(self.mass.is_finite() && self.mass > 0.0 && (1.0 / self.mass).is_finite()) {
+            return Err(ParticleError::Mass { mass: self.mass });
+        }
+        if self.fixed && self.velocity.iter().any(|&v| v != 0.0) {
+            return Err(ParticleError::FixedWithVelocity);
+        }
+        Ok(())
     }
 
     /// The same, fixed where it is.

@@ -1,13 +1,14 @@
 //! What a case is: a kind of constraint, the same typed as expressions, and where the two are compared.
 
 use crate::systems::random::{Random, dimension};
+use std::sync::LazyLock;
+
 use qhat::{
     Constraint, Driven, Expression, ExpressionConstraint, Particle, ParticleId, Purpose, Scope, State, System,
     SystemBuilder, Terms, evaluate,
 };
 
-pub(crate) const P: [ParticleId; 6] =
-    [ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(3), ParticleId(4), ParticleId(5)];
+pub(crate) static P: LazyLock<[ParticleId; 6]> = LazyLock::new(|| std::array::from_fn(crate::systems::id));
 
 /// Where the particles p0 … p6 start. In two dimensions without z.
 pub(crate) const PLACES: [[f64; 3]; 7] = [
@@ -172,7 +173,7 @@ impl Case {
                 let off = if self.tried == Tried::AtStart { 0.0 } else { 0.1 };
                 start.positions().iter().map(|x| x + random.within(-off, off)).collect()
             };
-            let terms = evaluate(&system, &start.at(q.clone(), v.clone()));
+            let terms = evaluate(&system, &start.with_motion(q.clone(), v.clone()));
             let jumps = self.turns && terms.residual[0].abs() > 3.0;
             let is_in_line = self.turns && self.d == 3 && libm::sin(terms.residual[0] + s) < 0.5;
             if !jumps && !is_in_line {
@@ -238,7 +239,7 @@ impl Clock {
 }
 
 pub(crate) fn parse(text: &str, purpose: Purpose, d: usize) -> Expression {
-    let particle = |name: &str| name.strip_prefix('p')?.parse().ok().map(ParticleId);
+    let particle = |name: &str| name.strip_prefix('p')?.parse().ok().map(crate::systems::id);
     let scope = Scope::new(purpose, dimension(d), &particle);
     Expression::parse(text, &scope).unwrap_or_else(|error| panic!("{text}: {error}"))
 }

@@ -8,19 +8,29 @@ use qhat::{
     Purpose, Relation, Surface, Volume, rigid_rods,
 };
 
-/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. It does not
-/// compile where a kind is missing: name a new one here, then add its cases.
+/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test fails
+/// where a kind is missing: name a new kind here, then add its cases.
 macro_rules! kinds {
     ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
         /// Name, dimensions, and whether it is an equality.
         pub(super) const KINDS: &[(&str, &[usize], bool)] =
             &[$($((stringify!($equality), &$dimensions, true),)* $((stringify!($other), &$dimensions, false),)*)*];
 
-        pub(super) fn kind(constraint: &Constraint) -> &'static str {
-            match constraint {
-                $($(Constraint::$equality(_) => stringify!($equality),)*)*
-                $($(Constraint::$other(_) => stringify!($other),)*)*
+        /// A name that is only in the list does not compile; a kind that the list lacks fails.
+        #[test]
+        fn the_list_names_every_kind_of_the_engine() {
+            fn kind(constraint: &Constraint) -> &'static str {
+                match constraint {
+                    $($(Constraint::$equality(_) => stringify!($equality),)*)*
+                    $($(Constraint::$other(_) => stringify!($other),)*)*
+                    _ => "",
+                }
             }
+            let nail = Constraint::from(Nail::new(P[0], [0.0; 3]));
+            assert_eq!(kind(&nail), nail.kind());
+            let listed = |name: &&str| KINDS.iter().any(|(listed, ..)| listed == name);
+            let missing: Vec<_> = Constraint::KINDS.iter().filter(|name| !listed(name)).collect();
+            assert!(missing.is_empty(), "{missing:?} are kinds of the engine: name them in `kinds!`, then add their cases");
         }
     };
 }
@@ -672,12 +682,12 @@ fn half_space() -> Constraint {
 }
 
 fn ball(inside: bool) -> Constraint {
-    Obstacle::new(P[1], Surface::Ball { centre: [0.3, -0.4, 0.1], radius: 0.5, inside }).into()
+    Obstacle::new(P[1], Surface::Ball { center: [0.3, -0.4, 0.1], radius: 0.5, inside }).into()
 }
 
 /// Its highest corner is at (0.3, −0.4, −0.2).
 fn corner_of_a_box() -> Constraint {
-    Obstacle::new(P[1], Surface::Box { centre: [-0.2, -0.9, -0.7], half: [0.5; 3] }).into()
+    Obstacle::new(P[1], Surface::Box { center: [-0.2, -0.9, -0.7], half: [0.5; 3] }).into()
 }
 
 fn squared_rod() -> Constraint {

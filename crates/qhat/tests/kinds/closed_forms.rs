@@ -112,7 +112,7 @@ fn a_cycloid_is_faster_than_the_straight_line() {
     let arrive = |place: [f64; 2], velocity: [f64; 2], curve: Curve, duration: f64| {
         let mut builder = System::builder(Dimension::Two);
         let particle = builder.particle(Particle::at("bead", place).with_velocity(velocity));
-        builder.constraint("wire", OnCurve { particle, curve }).force(systems::gravity());
+        builder.with_constraint("wire", OnCurve { particle, curve }).force(systems::gravity());
         let (system, state) = builder.build().unwrap();
         let settings = Settings { tolerance: 1e-12, ..systems::settings(Integrator::Dop853, 0.01) };
         let mut simulation = Simulation::new(system, state, settings).unwrap();

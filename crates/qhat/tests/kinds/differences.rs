@@ -2,7 +2,7 @@
 
 use super::can_be_driven;
 use super::case::{LATER, slopes_in_time};
-use super::cases::{CASES, kind};
+use super::cases::CASES;
 use crate::systems::dense::{assert_all_close, largest, multiply};
 use crate::systems::random::{Random, dimension};
 use qhat::evaluate;
@@ -39,7 +39,7 @@ fn every_kind_agrees_with_differences() {
         for (q, v) in case.states(&mut Random::new(5), STATES) {
             let at = |q: Vec<f64>, tau: f64| {
                 let (system, state) = &at[((tau / DELTA).round() + 2.0) as usize];
-                evaluate(system, &state.at(q, v.clone()))
+                evaluate(system, &state.with_motion(q, v.clone()))
             };
             let check = |symbol: &str, actual: &[f64], slope: &[f64]| {
                 assert_all_close(&format!("{}: {symbol}", case.name), actual, slope, tolerance);
@@ -80,7 +80,7 @@ fn every_kind_that_can_be_driven_is_driven_in_some_case() {
         for (named, constraint) in system.constraints().iter().zip(&constraints) {
             let m = constraint.residual(dimension(case.d), state.positions()).len();
             let rows = named.first_row..named.first_row + m;
-            let most = fastest.entry(kind(constraint)).or_default();
+            let most = fastest.entry(constraint.kind()).or_default();
             *most = most.max(largest(&Ct[rows]));
         }
     }

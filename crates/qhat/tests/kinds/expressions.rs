@@ -1,12 +1,12 @@
 //! Every kind against its twin, the same typed as expressions: the same rows, and the same motion.
 
 use super::case::{Case, LATER, P, slopes_in_time, twin};
-use super::cases::{CASES, KINDS, kind};
+use super::cases::{CASES, KINDS};
 use crate::systems::dense::{assert_all_close, assert_close};
 use crate::systems::random::{Random, dimension};
 use qhat::{
-    Constraint, Distance, ExpressionConstraint, Gravity, Integrator, Nail, NailForm, ParticleId, Settings, Simulation,
-    Spring, evaluate,
+    Constraint, Distance, ExpressionConstraint, Gravity, Integrator, Nail, NailForm, Settings, Simulation, Spring,
+    evaluate,
 };
 
 /// Random states tried for every case.
@@ -20,7 +20,7 @@ fn every_kind_has_the_rows_of_its_expressions() {
         let (system, start) = case.system(LATER);
         let twins = case.typed();
         for (q, v) in case.states(&mut Random::new(5), STATES) {
-            let terms = evaluate(&system, &start.at(q.clone(), v.clone()));
+            let terms = evaluate(&system, &start.with_motion(q.clone(), v.clone()));
             let (J, Ct) = (terms.jacobian.to_dense(), slopes_in_time(&terms));
             assert_eq!(terms.residual.len(), twins.len(), "{}", case.name);
             for (row, twin) in twins.iter().enumerate() {
@@ -38,7 +38,7 @@ fn every_kind_has_the_rows_of_its_expressions() {
                 }
                 let mut dense = vec![0.0; q.len()];
                 for (particle, block) in twin.particles().iter().zip(blocks.chunks(case.d)) {
-                    dense[particle.0 * case.d..][..case.d].copy_from_slice(block);
+                    dense[particle.index() * case.d..][..case.d].copy_from_slice(block);
                 }
                 let name = format!("{}: J typed", case.name);
                 assert_all_close(&name, &J[row * q.len()..][..q.len()], &dense, roundoff);
@@ -71,7 +71,7 @@ fn thrown(case: &Case, constraints: Vec<Constraint>, integrator: Integrator) -> 
     for (i, a) in P[..5].iter().enumerate() {
         for b in &P[..i] {
             let square = |k: usize| {
-                let along = q[a.0 * d + k] - q[b.0 * d + k];
+                let along = q[a.index() * d + k] - q[b.index() * d + k];
                 along * along
             };
             let rest = 0.9 * (0..d).map(square).sum::<f64>().sqrt();
@@ -81,7 +81,7 @@ fn thrown(case: &Case, constraints: Vec<Constraint>, integrator: Integrator) -> 
         }
     }
     builder.force(Gravity { acceleration: [0.3, -9.81, 0.2] });
-    builder.constraint("beside", Distance::new(ParticleId(5), ParticleId(6), 1.0));
+    builder.constraint("beside", Distance::new(crate::systems::id(5), crate::systems::id(6), 1.0));
     for (k, constraint) in constraints.into_iter().enumerate() {
         builder.constraint(format!("c{k}"), constraint);
     }
@@ -135,7 +135,7 @@ fn the_scalar_nail_moves_as_its_expression() {
 fn every_kind_has_its_cases() {
     for (name, dimensions, moves) in KINDS {
         for d in *dimensions {
-            let is_it = |case: &&Case| case.d == *d && case.constraints(0.0).iter().any(|it| kind(it) == *name);
+            let is_it = |case: &&Case| case.d == *d && case.constraints(0.0).iter().any(|it| it.kind() == *name);
             let mut cases = CASES.iter().filter(is_it).peekable();
             assert!(cases.peek().is_some(), "{name} has no case in {d} dimensions: add one to tests/kinds/cases.rs");
             assert!(!moves || cases.any(|case| case.moves), "no case moves {name} in {d} dimensions");

@@ -16,7 +16,7 @@ fn moving(case: &Case) -> (System, State) {
     for (i, a) in P.iter().enumerate() {
         for b in &P[..i] {
             let square = |k: usize| {
-                let apart = q[a.0 * d + k] - q[b.0 * d + k];
+                let apart = q[a.index() * d + k] - q[b.index() * d + k];
                 apart * apart
             };
             let rest = 0.95 * (0..d).map(square).sum::<f64>().sqrt();

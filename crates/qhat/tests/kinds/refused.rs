@@ -4,8 +4,8 @@ use super::case::{P, parse};
 use super::motion::curve;
 use crate::systems::random::dimension;
 use qhat::{
-    Anchor, Angle, Area, Constraint, Curve, Dimension, Direction, Driven, Gears, Lengths, OnCircle, OnCurve, OnLine,
-    OnPlane, OnSphere, Particle, ParticleId, Purpose, System, Volume,
+    Anchor, Angle, Area, Constraint, Curve, Dimension, Direction, Driven, Gears, GeometryError, Lengths, OnCircle,
+    OnCurve, OnLine, OnPlane, OnSphere, Particle, ParticleId, Purpose, System, Volume,
 };
 
 #[test]
@@ -65,7 +65,9 @@ fn directions_lines_surfaces_and_curves_that_cannot_be() {
     refused(two, |a, _| OnSphere::new(a, Anchor::Point([f64::NAN; 3].map(Driven::Constant)), 1.0).into(), "finite");
     refused(two, |a, b| OnCircle::new(a, b, [0.0, 0.0, 1.0], 1.0).into(), "needs three dimensions");
     refused(three, |a, _| OnCurve { particle: a, curve: curve(&["s", "s"], 0.0, 1.0) }.into(), "3 components");
-    let not_a_curve = |made: Result<Curve, String>, words: &str| assert!(made.unwrap_err().contains(words));
+    let not_a_curve = |made: Result<Curve, GeometryError>, words: &str| {
+        assert!(made.unwrap_err().to_string().contains(words));
+    };
     not_a_curve(Curve::through(&[[0.0; 3]], false), "needs 2 points");
     not_a_curve(Curve::through(&[[0.0; 3], [0.0; 3]], false), "at one place");
     not_a_curve(Curve::polyline(&[[0.0; 3], [1.0, 0.0, 0.0]], -1.0, false), "must be positive");

@@ -3,7 +3,7 @@
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close};
 use crate::systems::random::{Random, dimension};
-use qhat::{Dimension, Distance, Formulation, Particle, ParticleId, State, System, evaluate};
+use qhat::{Dimension, Distance, Formulation, Particle, State, System, evaluate};
 
 /// The rows of several constraints stand one below the other, each with its own blocks.
 #[test]
@@ -59,7 +59,7 @@ fn rod(random: &mut Random) -> (System, State) {
         let v = random.numbers(3, -0.5, 0.5);
         builder.particle(Particle::at(format!("p{i}"), x).with_velocity(v));
     }
-    builder.constraint("it", Distance::new(ParticleId(2), ParticleId(0), R));
+    builder.constraint("it", Distance::new(crate::systems::id(2), crate::systems::id(0), R));
     builder.build().unwrap()
 }
 

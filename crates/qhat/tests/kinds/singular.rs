@@ -13,7 +13,7 @@ fn singular_places_end_in_an_error_or_in_numbers() {
             let x = [if i < 2 { 0.0 } else { i as f64 }, 0.0, 0.0];
             builder.particle(Particle::at(format!("p{i}"), &x[..d]).with_velocity(vec![0.1; d]));
         }
-        builder.constraint("anchor", Distance::new(P[4], P[5], 1.0)).constraint("it", constraint);
+        builder.with_constraint("anchor", Distance::new(P[4], P[5], 1.0)).constraint("it", constraint);
         let (system, state) = builder.build().unwrap();
         let outcome = Simulation::new(system, state, Settings::default()).and_then(|mut simulation| {
             simulation.step()?;

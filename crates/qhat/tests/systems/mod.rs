@@ -6,9 +6,23 @@ pub mod open_chains;
 pub mod random;
 pub mod swing;
 
+use std::sync::LazyLock;
+
 use qhat::{Dimension, Distance, Feedback, Gravity, Integrator, Nail, Particle, ParticleId, Settings, State, System};
 
 pub const G: f64 = 9.81;
+
+/// More particles than any test names by place.
+const MOST_IDS: usize = 20_000;
+
+/// The id of the particle at a place, that of any system that has so many.
+pub fn id(place: usize) -> ParticleId {
+    static IDS: LazyLock<Vec<ParticleId>> = LazyLock::new(|| {
+        let mut builder = System::builder(Dimension::Two);
+        (0..MOST_IDS).map(|i| builder.particle(Particle::at(i.to_string(), [0.0; 2]))).collect()
+    });
+    IDS[place]
+}
 
 /// A frame of a page [s].
 pub const FRAME: f64 = 1.0 / 60.0;
@@ -31,7 +45,7 @@ pub fn pendulum(angle: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [libm::sin(angle), -libm::cos(angle)]).with_mass(2.0));
-    builder.constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
+    builder.with_constraint("rod", Distance::new(pivot, bob, 1.0)).force(gravity());
     builder.build().unwrap()
 }
 
@@ -41,7 +55,9 @@ pub fn double_pendulum() -> (System, State) {
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let elbow = builder.particle(Particle::at("elbow", [1.0, 0.0]));
     let tip = builder.particle(Particle::at("tip", [1.6, 0.8]).with_mass(0.5));
-    builder.constraint("upper", Distance::new(pivot, elbow, 1.0)).constraint("lower", Distance::new(elbow, tip, 1.0));
+    builder
+        .with_constraint("upper", Distance::new(pivot, elbow, 1.0))
+        .constraint("lower", Distance::new(elbow, tip, 1.0));
     builder.force(gravity());
     builder.build().unwrap()
 }
@@ -90,7 +106,7 @@ pub fn net(n: usize) -> (System, State) {
             builder.particle(Particle::at(format!("p{i}_{j}"), at(i, j)).with_mass(0.01));
         }
     }
-    let id = |i: usize, j: usize| ParticleId(i * n + j);
+    let id = |i: usize, j: usize| id(i * n + j);
     let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt();
     for i in 0..n {
         for j in 0..n {
@@ -105,7 +121,7 @@ pub fn net(n: usize) -> (System, State) {
         }
     }
     builder
-        .constraint("left", Nail::new(id(0, 0), at(0, 0)))
+        .with_constraint("left", Nail::new(id(0, 0), at(0, 0)))
         .constraint("right", Nail::new(id(0, n - 1), at(0, n - 1)));
     builder.force(Gravity { acceleration: [0.0, -G, 1.0] });
     builder.build().unwrap()

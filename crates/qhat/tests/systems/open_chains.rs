@@ -1,9 +1,7 @@
 //! Open chains of every kind that the lanes take.
 
 use super::random::Random;
-use qhat::{
-    Dimension, Distance, Drag, Gravity, MouseSpring, Nail, Particle, ParticleId, PointForce, Spring, State, System,
-};
+use qhat::{Dimension, Distance, Drag, Gravity, MouseSpring, Nail, Particle, PointForce, Spring, State, System};
 
 /// Up to four open chains with any masses, ends held, nailed or free, some rods springs, and every kind of force on any
 /// particle, held ones among them. `is_general` adds a triangle of rods far away, which no lane takes.
@@ -27,14 +25,14 @@ pub fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
             if is_first && first == 1 || is_last && last == 1 {
                 builder.constraint(
                     format!("nail {chain}-{i}"),
-                    Nail::new(id, std::array::from_fn(|c| *x.get(c).unwrap_or(&0.0))),
+                    Nail::new(id, std::array::from_fn::<_, 3, _>(|c| *x.get(c).unwrap_or(&0.0))),
                 );
             }
             let step: Vec<f64> =
                 (0..d).map(|c| 0.3 * random.within(-1.0, 1.0) + if c == 0 { 0.5 } else { 0.0 }).collect();
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
             if i < links {
-                let rod = Distance::new(id, ParticleId(id.0 + 1), length);
+                let rod = Distance::new(id, super::id(id.index() + 1), length);
                 let is_soft = random.below(12) == 0;
                 // Both ends held, by one rod: not for lanes.
                 let rod = if is_soft || links == 1 { rod.with_compliance(1e-2, 0.1) } else { rod };
@@ -47,9 +45,9 @@ pub fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
     }
     builder.force(Gravity { acceleration: [0.3, -9.81, 1.0] });
     if random.below(2) == 0 {
-        builder.force(Drag { coefficient: 0.1 }).force(Drag { coefficient: 0.02 });
+        builder.with_force(Drag { coefficient: 0.1 }).force(Drag { coefficient: 0.02 });
     }
-    let any = |random: &mut Random| ParticleId(random.below(count));
+    let any = |random: &mut Random| super::id(random.below(count));
     builder.force(PointForce { particle: any(random), force: [0.01, 0.02, 0.03] });
     builder.force(MouseSpring { particle: any(random), target: [1.0, 0.0, 0.0], stiffness: 0.5, damping: 0.01 });
     for _ in 0..3 {

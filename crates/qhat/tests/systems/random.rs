@@ -1,8 +1,8 @@
 //! Seeded random numbers and random systems: the same on every machine and every run.
 
 use qhat::{
-    Dimension, Distance, DistanceForm, Drag, Feedback, Gravity, MouseSpring, Nail, NailForm, Particle, ParticleId,
-    PointForce, Spring, State, System,
+    Dimension, Distance, DistanceForm, Drag, Feedback, Gravity, MouseSpring, Nail, NailForm, Particle, PointForce,
+    Spring, State, System,
 };
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -83,12 +83,12 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
         let length = random.within(0.5, 2.0);
         let form = if random.below(2) == 0 { DistanceForm::Length } else { DistanceForm::Squared };
         let (a, b) = if random.below(2) == 0 { (i, j) } else { (j, i) };
-        builder.constraint(format!("rod{i}"), Distance { form, ..Distance::new(ParticleId(a), ParticleId(b), length) });
+        builder.constraint(format!("rod{i}"), Distance { form, ..Distance::new(super::id(a), super::id(b), length) });
     }
-    let held = ParticleId(particles - 1);
+    let held = super::id(particles - 1);
     let form = if random.below(2) == 0 { NailForm::Vector } else { NailForm::Scalar };
     // Away from the particle, so that the scalar form has a gradient.
-    let at = std::array::from_fn(|k| points[held.0].get(k).map_or(0.0, |x| x + random.within(0.2, 0.8)));
+    let at = std::array::from_fn(|k| points[held.index()].get(k).map_or(0.0, |x| x + random.within(0.2, 0.8)));
     builder.constraint("nail", Nail { particle: held, at, form });
     builder.force(Gravity { acceleration: random.triple() });
     builder.force(Drag { coefficient: random.within(0.1, 1.0) });
@@ -96,10 +96,10 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
         let a = 1 + random.below(particles - 1);
         let b = random.below(a);
         let (stiffness, damping, rest) = (random.within(1.0, 20.0), random.within(0.1, 2.0), random.within(0.2, 2.0));
-        builder.force(Spring { a: ParticleId(a), b: ParticleId(b), stiffness, damping, rest });
+        builder.force(Spring { a: super::id(a), b: super::id(b), stiffness, damping, rest });
     }
-    builder.force(PointForce { particle: ParticleId(1), force: random.triple() });
-    builder.force(MouseSpring { particle: ParticleId(1), target: random.triple(), stiffness: 3.0, damping: 0.7 });
+    builder.force(PointForce { particle: super::id(1), force: random.triple() });
+    builder.force(MouseSpring { particle: super::id(1), target: random.triple(), stiffness: 3.0, damping: 0.7 });
     builder.feedback(Feedback { ks: random.within(1.0, 50.0), kd: random.within(1.0, 10.0), ..Feedback::NONE });
     builder.build().unwrap()
 }

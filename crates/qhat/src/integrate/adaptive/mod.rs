@@ -14,10 +14,10 @@ pub(crate) use substeps::{End, Substeps, accepts};
 
 use super::frame::Frame;
 use crate::drift::Drift;
-use crate::error::{SettingsError, StepError};
+use crate::error::StepError;
 use crate::multiplier::Equation;
 use crate::point::Motion;
-use crate::settings::Feedback;
+use crate::settings::{Feedback, SettingsError};
 use crate::state::{Carry, State};
 use crate::system::System;
 

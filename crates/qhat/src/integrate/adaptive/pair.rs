@@ -82,7 +82,8 @@ pub(crate) fn carry_on<const D: usize>(
 ) -> Result<(StepReport, bool), StepError> {
     check_length(frame.length)?;
     let system = frame.system;
-    let substeps = Substeps::new(frame, state).within(limit);
+    let mut substeps = Substeps::new(frame, state).within(limit);
+    substeps.watch = frame.workspace.watch.take();
     let mut carry = state.carry.take();
     let mut run = PairFrame { pair, frame, substeps };
     if let Some(plan) = &system.chains
@@ -91,7 +92,10 @@ pub(crate) fn carry_on<const D: usize>(
         run.substeps.report.solver = Solver::Chains;
         match run.along_chains::<D>(plan, state)? {
             End::Singular => carry = None,
-            end => return Ok((run.substeps.finish(state, None), end == End::Whole)),
+            end => {
+                run.frame.workspace.watch = run.substeps.watch.take();
+                return Ok((run.substeps.finish(state, None), end == End::Whole));
+            }
         }
     }
     run.substeps.report.solver = Solver::Rows;
@@ -99,6 +103,7 @@ pub(crate) fn carry_on<const D: usize>(
     begin::<D>(run.frame, state, carry);
     let end = run.by_rows::<D>(state)?;
     let PairFrame { frame, mut substeps, .. } = run;
+    frame.workspace.watch = substeps.watch.take();
     if end == End::Whole && system.contacts.is_empty() {
         // A frame that ran out of work may have ended on a rejected substep: the factor is then that of one of its
         // stages.

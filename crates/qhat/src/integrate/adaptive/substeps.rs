@@ -6,6 +6,7 @@ use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
 use crate::integrate::frame::Frame;
+use crate::integrate::watch::TensionWatch;
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::StepReport;
@@ -68,6 +69,7 @@ pub(crate) struct Substeps<'a> {
     /// The substep to try next [s].
     proposed: f64,
     pub(crate) report: StepReport,
+    pub(crate) watch: Option<TensionWatch>,
 }
 
 impl<'a> Substeps<'a> {
@@ -77,7 +79,7 @@ impl<'a> Substeps<'a> {
         let report = StepReport { smallest_substep: length, ..StepReport::default() };
         let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
         let (done, tried, limit) = (0.0, 0, usize::MAX);
-        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report }
+        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report, watch: None }
     }
 
     /// The same with no more than so many substeps, or as many as show that they will not do.
@@ -112,6 +114,10 @@ impl<'a> Substeps<'a> {
                     let substep = self.accept(substep, &attempt, growth);
                     let drift = method.keep(state, substep.h);
                     self.book(&substep, &attempt, &drift, state)?;
+                    if let Some(watch) = &mut self.watch {
+                        method.end(state);
+                        watch.note(self.system, state);
+                    }
                 }
             }
         }

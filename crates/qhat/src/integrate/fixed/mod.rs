@@ -46,6 +46,9 @@ pub(crate) fn run<const D: usize>(
     state.work.stabilization += work.stabilization;
     state.work.drives += work.drives;
     state.carry = None;
+    if let Some(watch) = &mut frame.workspace.watch {
+        watch.note(frame.system, state);
+    }
     let mut report = StepReport {
         factorizations: frame.factorizations() - factorizations,
         smallest_substep: frame.length,

@@ -137,6 +137,9 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             state.t = self.scratch.base.end;
             let equation = &self.frame.workspace.equation;
             report.book(h, 0, &drift::<D>(system, &equation.rows, &equation.inactive, &state.q));
+            if let Some(watch) = &mut self.frame.workspace.watch {
+                watch.note(system, state);
+            }
         }
         report.factorizations = self.scratch.newton.matrix.factorizations;
         report.energy = energy::energy(system, state);

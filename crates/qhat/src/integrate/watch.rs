@@ -1,0 +1,68 @@
+//! TensionWatch: the largest tension at the ends of the substeps of a frame.
+//!
+//! No method has λ at the end of every substep: open chains solve for accelerations alone, and Runge–Kutta methods know λ
+//! at their stages. So the watch solves the equation once more a substep, in arrays of its own: whether a simulation is
+//! watched does not change a bit of its motion.
+
+use super::Workspace;
+use crate::report::MaxTension;
+use crate::settings::{Feedback, Settings};
+use crate::space::ConstraintId;
+use crate::state::State;
+use crate::system::System;
+
+/// The largest tension of the frame so far.
+#[derive(Clone, Debug)]
+pub(crate) struct TensionWatch {
+    workspace: Box<Workspace>,
+    feedback: Feedback,
+    largest: Option<MaxTension>,
+}
+
+impl TensionWatch {
+    /// A watch over a system.
+    fn new(system: &System) -> Self {
+        TensionWatch { workspace: Box::new(Workspace::new(system)), feedback: Feedback::NONE, largest: None }
+    }
+
+    /// Takes the tensions at a state.
+    pub(crate) fn note(&mut self, system: &System, state: &State) {
+        let links = system.constraints.iter().enumerate().filter(|(_, named)| named.constraint.as_link().is_some());
+        let tensions = self.workspace.tension(system, state, &self.feedback);
+        for ((place, _), tension) in links.zip(tensions) {
+            let largest = MaxTension { tension, link: ConstraintId(place), time: state.t };
+            self.largest = MaxTension::larger(self.largest, Some(largest));
+        }
+    }
+}
+
+impl Workspace {
+    /// From now on the largest tension of every frame is recorded, or not.
+    pub(crate) fn watch_tension(&mut self, system: &System, is_watched: bool) {
+        self.watch = is_watched.then(|| TensionWatch::new(system));
+        self.is_watched = is_watched;
+    }
+
+    /// Arrays for another system, or the same one changed, that go on recording.
+    pub(crate) fn renewed(&self, system: &System) -> Workspace {
+        let mut workspace = Workspace::new(system);
+        workspace.watch_tension(system, self.is_watched);
+        workspace
+    }
+
+    /// Begins the record of a frame.
+    pub(super) fn begin_watch(&mut self, system: &System, settings: &Settings) {
+        if !self.is_watched {
+            return;
+        }
+        // A frame that failed took its watch with it.
+        let watch = self.watch.get_or_insert_with(|| TensionWatch::new(system));
+        watch.feedback = if settings.integrator.projects() { Feedback::NONE } else { system.feedback };
+        watch.largest = None;
+    }
+
+    /// The largest tension of the frame; `None` unless it is watched.
+    pub(super) fn largest_tension(&mut self) -> Option<MaxTension> {
+        self.watch.as_mut()?.largest.take()
+    }
+}

@@ -1,0 +1,85 @@
+//! Why a system could not be built.
+
+use crate::constraint::ConstraintError;
+use crate::force::ForceError;
+use crate::settings::SettingsError;
+use thiserror::Error;
+
+/// Why a system could not be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A particle is refused.
+    #[error("particle `{name}`: {reason}")]
+    Particle {
+        /// Its name.
+        name: String,
+        /// Why it is refused.
+        #[source]
+        reason: ParticleError,
+    },
+    /// A constraint is refused.
+    #[error("constraint `{name}`: {reason}")]
+    Constraint {
+        /// Its name.
+        name: String,
+        /// Why it is refused.
+        #[source]
+        reason: ConstraintError,
+    },
+    /// A force is refused.
+    #[error("force number {index}: {reason}")]
+    Force {
+        /// Its place in the order of addition.
+        index: usize,
+        /// Why it is refused.
+        #[source]
+        reason: ForceError,
+    },
+    /// The factor of A would not fit.
+    #[error(
+        "the constraints are so many and so closely connected that factoring them would take {} GiB of memory; \
+         the limit is {} GiB",
+        memory.div_ceil(1 << 30), limit >> 30
+    )]
+    TooLarge {
+        /// What it would take [bytes].
+        memory: u64,
+        /// What is allowed [bytes].
+        limit: u64,
+    },
+    /// A feedback coefficient is out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+/// Why a particle is refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ParticleError {
+    /// Another particle has the same name.
+    #[error("the name is used twice")]
+    NameTaken,
+    /// The position or the velocity has the wrong number of components.
+    #[error("the {what} must have {dimension} components, but has {count}")]
+    Components {
+        /// The word `position` or `velocity`.
+        what: &'static str,
+        /// d of the system.
+        dimension: usize,
+        /// The number of components.
+        count: usize,
+    },
+    /// A component of the position or velocity is infinite or not a number.
+    #[error("position and velocity must be finite numbers")]
+    NotFinite,
+    /// The mass, or its inverse, is not positive and finite.
+    #[error("the mass must be positive and finite, but is {mass:?} kg")]
+    Mass {
+        /// m [kg].
+        mass: f64,
+    },
+    /// A fixed particle has a velocity.
+    #[error("a fixed particle cannot have a velocity")]
+    FixedWithVelocity,
+}
