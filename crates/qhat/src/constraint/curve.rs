@@ -60,7 +60,7 @@ pub(super) struct Foot<N, const D: usize> {
 }
 
 impl Curve {
-    /// The curve x(s), y(s) and in space z(s) [m] for s between two numbers: expressions for
+    /// The curve x(s), y(s) and in space z(s) \[m\] for s between two numbers: expressions for
     /// [`Purpose::Curve`](crate::Purpose::Curve). Beyond its ends the curve follows the same expressions.
     ///
     /// # Errors
@@ -79,7 +79,7 @@ impl Curve {
         Curve::new(CurveForm::Expressions(components), from, to)
     }
 
-    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. An open spline goes on straight
+    /// The cubic spline through points \[m\], closed or open; z = 0 in two dimensions. An open spline goes on straight
     /// beyond its ends.
     ///
     /// # Errors
@@ -90,8 +90,8 @@ impl Curve {
         Curve::new(CurveForm::Spline(spline), 0.0, end)
     }
 
-    /// Straight pieces from point to point [m], closed or open, with arcs of a radius [m] at the corners; z = 0 in two
-    /// dimensions. The parameter is the arc length [m]. An open polyline goes on straight beyond its ends.
+    /// Straight pieces from point to point \[m\], closed or open, with arcs of a radius \[m\] at the corners; z = 0 in
+    /// two dimensions. The parameter is the arc length \[m\]. An open polyline goes on straight beyond its ends.
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
@@ -126,12 +126,12 @@ impl Curve {
         [self.shape.from, self.shape.to]
     }
 
-    /// The point at a parameter [m]; z = 0 in two dimensions.
+    /// The point at a parameter \[m\]; z = 0 in two dimensions.
     pub fn point(&self, s: f64) -> [f64; 3] {
         self.shape.at::<3>(s).map(|[c, _, _]| c)
     }
 
-    /// The corners of a polygon that looks like the curve [m], from end to end, for drawing: so many pieces of equal
+    /// The corners of a polygon that looks like the curve \[m\], from end to end, for drawing: so many pieces of equal
     /// parameter, or of a polyline its straight pieces and its arcs in pieces of 5°.
     pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {
         let Shape { form, from, to, .. } = &*self.shape;

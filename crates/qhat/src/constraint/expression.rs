@@ -45,7 +45,7 @@ struct Start {
 }
 
 impl ExpressionConstraint {
-    /// Holds an expression at zero. `positions` are those of all particles at the start [m], d·n numbers. The scale
+    /// Holds an expression at zero. `positions` are those of all particles at the start \[m\], d·n numbers. The scale
     /// of the row is measured there, at t = 0.
     pub fn new(expression: Expression, positions: &[f64]) -> Self {
         let d = expression.dimension();
@@ -59,7 +59,7 @@ impl ExpressionConstraint {
         ExpressionConstraint { expression, start, scale: None }
     }
 
-    /// The same constraint with a given scale [C], above 0: the |C| that counts as a relative error of one.
+    /// The same constraint with a given scale \[C\], above 0: the |C| that counts as a relative error of one.
     pub fn with_scale(self, scale: f64) -> Self {
         ExpressionConstraint { scale: Some(scale), ..self }
     }

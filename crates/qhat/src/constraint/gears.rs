@@ -55,7 +55,7 @@ pub struct Gears {
 }
 
 impl Gears {
-    /// Two wheels that mesh at α [rad]. Each wheel is an arm from its centre to one of its points, with its number of
+    /// Two wheels that mesh at α \[rad\]. Each wheel is an arm from its centre to one of its points, with its number of
     /// teeth. One of the numbers is negative where one wheel lies inside the other, or a belt connects them.
     pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Driven>) -> Self {
         let [[c1, _], [c2, _]] = wheels;
@@ -67,14 +67,15 @@ impl Gears {
         Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
     }
 
-    /// Σ z φ = α [rad] but for whole turns, over arms with φ counted from the x axis: wheels in bearings of the ground.
+    /// Σ z φ = α \[rad\] but for whole turns, over arms with φ counted from the x axis: wheels in bearings of the
+    /// ground.
     pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Driven>) -> Self {
         let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
     /// A pinion, an arm from its centre to one of its points, and a point of the rack, which moves along a direction
-    /// of any length. The pinion, of this radius [m], is to the left of that direction.
+    /// of any length. The pinion, of this radius \[m\], is to the left of that direction.
     pub fn rack(
         pinion: [ParticleId; 2],
         rack: ParticleId,

@@ -156,7 +156,7 @@ impl Constraint {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
 
-    /// C at t = 0 with the particles at q [m], flat, d numbers each. A constraint made for the target 0 tells in this
+    /// C at t = 0 with the particles at q \[m\], flat, d numbers each. A constraint made for the target 0 tells in this
     /// way which target (length, angle, area) the given positions satisfy.
     ///
     /// # Panics

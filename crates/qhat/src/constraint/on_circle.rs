@@ -28,12 +28,12 @@ pub struct OnCircle {
     pub center: Anchor,
     /// What the circle is at right angles to, of any length.
     pub axis: [f64; 3],
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnCircle {
-    /// On a circle of a radius [m] about a centre, across an axis.
+    /// On a circle of a radius \[m\] about a centre, across an axis.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }

@@ -20,7 +20,7 @@ use crate::space::ParticleId;
 /// The plane that a particle is on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Plane {
-    /// Through p(t) [m] across n(t), of any length.
+    /// Through p(t) \[m\] across n(t), of any length.
     Across(DrivenPoint, DrivenPoint),
     /// Through three particles.
     Particles([ParticleId; 3]),
@@ -36,7 +36,7 @@ pub struct OnPlane {
 }
 
 impl OnPlane {
-    /// On a plane that stays, through a point [m] across a normal.
+    /// On a plane that stays, through a point \[m\] across a normal.
     pub fn fixed(particle: ParticleId, point: [f64; 3], normal: [f64; 3]) -> Self {
         OnPlane { particle, plane: Plane::Across(still(point), still(normal)) }
     }

@@ -27,12 +27,12 @@ pub struct OnSphere {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnSphere {
-    /// At a distance [m] from a centre.
+    /// At a distance \[m\] from a centre.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
         OnSphere { particle, center: center.into(), radius: radius.into() }
     }

@@ -32,14 +32,14 @@ use crate::stiffness::Stiffness;
 pub struct ExpressionForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// F [N], d of them.
+    /// F \[N\], d of them.
     pub components: Vec<Expression>,
 }
 
 /// A potential energy as an expression: it pulls every particle it depends on downhill.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionPotential {
-    /// V [J].
+    /// V \[J\].
     pub potential: Expression,
 }
 

@@ -39,7 +39,7 @@ pub struct Gas {
 }
 
 impl Gas {
-    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q [m], flat, d numbers a
+    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q \[m\], flat, d numbers a
     /// particle, where it fills A₀. Edges must go round counter-clockwise, and triangles as seen from outside. A
     /// particle beyond the positions makes A₀ NaN, which building a system refuses.
     pub fn new(facets: Vec<Facet>, pressure: f64, exponent: f64, dimension: Dimension, q: &[f64]) -> Self {
