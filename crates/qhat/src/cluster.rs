@@ -25,7 +25,7 @@ use crate::space::Dimension;
 /// times the load that it carries.
 const FLAT: f64 = 1e-6;
 
-/// The pairs of points [m] between which rods hold a cluster rigid, with no superfluous rod; z is ignored in two
+/// The pairs of points \[m\] between which rods hold a cluster rigid, with no superfluous rod; z is ignored in two
 /// dimensions.
 ///
 /// ```

@@ -10,7 +10,7 @@ use crate::space::Dimension;
 pub enum Driven {
     /// A fixed number.
     Constant(f64),
-    /// An expression that depends on t [s] alone.
+    /// An expression that depends on t \[s\] alone.
     Function(Expression),
 }
 
@@ -26,7 +26,7 @@ impl Driven {
         }
     }
 
-    /// A function of t [s] from its text, as in `"2*pi*t"`.
+    /// A function of t \[s\] from its text, as in `"2*pi*t"`.
     ///
     /// ```
     /// use qhat::Driven;
@@ -43,7 +43,7 @@ impl Driven {
         Expression::parse(text, &scope).map(Driven::Function)
     }
 
-    /// Its value at t [s].
+    /// Its value at t \[s\].
     pub fn value(&self, t: f64) -> f64 {
         self.at(t).0
     }

@@ -11,7 +11,7 @@ use crate::space::{ParticleId, in_dimension};
 use crate::state::{State, Work};
 use crate::system::System;
 
-/// The energy account [J].
+/// The energy account \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energy {
@@ -57,8 +57,8 @@ pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>
     system.all_forces().map(|force| force.power(motion)).sum()
 }
 
-/// Power of the drives [W]: −λᵀ C_t over the rigid rows. The constraint force has the power Jᵀλ·q̇ = λᵀ (Ċ − C_t), and Ċ
-/// = 0 on legal motion.
+/// Power of the drives [W]: −λᵀ C_t over the rigid rows. The constraint force has the power Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
+/// Ċ = 0 on legal motion.
 pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
     let mut power = 0.0;
     // In most systems no row depends on t, and one sum without branches shows it.

@@ -5,27 +5,27 @@ use crate::report::StepReport;
 use crate::simulation::Simulation;
 use crate::threads;
 
-/// Takes one [step](Simulation::step) of every simulation. They know nothing of each other, so the bits are those of one
-/// step after the other. To run many frames, [`run_all`] is quicker.
+/// Takes one [step](Simulation::step) of every simulation. They know nothing of each other, so the bits are those of
+/// one step after the other. To run many frames, [`run_all`] is quicker.
 ///
 /// Returns one outcome each, in their order.
 pub fn step_all(simulations: &mut [Simulation]) -> Vec<Result<StepReport, StepError>> {
     each(0, simulations, &|_, simulation| simulation.step())
 }
 
-/// Runs every simulation for a number of frames, and collects what `observe` makes of each frame. `observe` gets the place
-/// of the simulation in the slice, the simulation, and the report of the frame.
+/// Runs every simulation for a number of frames, and collects what `observe` makes of each frame. `observe` gets the
+/// place of the simulation in the slice, the simulation, and the report of the frame.
 ///
-/// Each simulation runs all its frames while it is in the cache of a core. With small systems that is faster than as many
-/// calls of [`step_all`], which walk through all memory once a frame; the bits are the same.
+/// Each simulation runs all its frames while it is in the cache of a core. With small systems that is faster than as
+/// many calls of [`step_all`], which walk through all memory once a frame; the bits are the same.
 ///
-/// Returns one list each, in their order, with one item a frame; or the error of the first frame that failed, where that
-/// simulation stopped.
+/// Returns one list each, in their order, with one item a frame; or the error of the first frame that failed, where
+/// that simulation stopped.
 ///
 /// # Threads
-/// With the feature `rayon`, which is on by default, the work is spread over the global pool of rayon, which has a thread
-/// for every core, or as many as the environment variable `RAYON_NUM_THREADS` says. A pool of your own takes over by
-/// `ThreadPool::install`:
+/// With the feature `rayon`, which is on by default, the work is spread over the global pool of rayon, which has a
+/// thread for every core, or as many as the environment variable `RAYON_NUM_THREADS` says. A pool of your own takes
+/// over by `ThreadPool::install`:
 ///
 /// ```
 /// # use qhat::{Dimension, Gravity, Particle, Settings, Simulation, System, run_all};

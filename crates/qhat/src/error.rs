@@ -9,75 +9,94 @@ use thiserror::Error;
 pub enum StepError {
     /// A coordinate or velocity became infinite or undefined.
     #[error(
-        "at t = {} s the motion of `{particle}` is no longer a finite number: the step h is too large for this system", shown(*time))]
+        "at t = {} s the motion of `{particle}` is no longer a finite number: the step h is too large for \
+         this system",
+        shown(*time)
+    )]
     NotFinite {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
         /// The first particle concerned.
         particle: String,
     },
     /// A constraint is violated beyond recognition.
     #[error(
-        "at t = {} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too large, or the constraints cannot all hold", shown(*time))]
+        "at t = {} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too \
+         large, or the constraints cannot all hold",
+        shown(*time)
+    )]
     Diverged {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
         /// The worst row.
         row: String,
         /// |C| relative to the row's scale.
         relative: f64,
     },
-    /// Contacts for which no forces or impulses were found that fit them all.
+    /// No forces or impulses were found that fit all contacts.
     #[error(
-        "at t = {} s no contact forces fit: what `{constraint}` does contradicts the others (friction of this size may have no answer; lower it)", shown(*time))]
+        "at t = {} s no contact forces fit: what `{constraint}` does contradicts the others (friction of \
+         this size may have no answer; lower it)",
+        shown(*time)
+    )]
     Jammed {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
         /// One of the contacts.
         constraint: String,
     },
-    /// So many events that there seems to be no end of them.
-    #[error("at t = {} s one frame has had {events} events, contacts that open and close; a shorter h, or less restitution, may do", shown(*time))]
+    /// A frame had so many events that it may have no end of them.
+    #[error(
+        "at t = {} s one frame has had {events} events, contacts that open and close; a shorter h, or less \
+         restitution, may do",
+        shown(*time)
+    )]
     TooManyEvents {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
-        /// How many.
+        /// The number of events.
         events: usize,
     },
-    /// An integrator that does not find the time of an event, and a system that has events.
+    /// The system has events, and the integrator cannot locate them.
     #[error("`{constraint}` opens, closes or breaks, and {integrator} cannot find when: use auto, dop853 or dopri5")]
     NoEvents {
-        /// Which was chosen.
+        /// The integrator that was chosen.
         integrator: Integrator,
-        /// The first constraint that contacts.
+        /// The first constraint that has events.
         constraint: String,
     },
-    /// A start beyond what a contact or limit allows: nothing says on which side it belongs, so it is not moved.
-    #[error("at t = {} s {} beyond what `{constraint}` allows: start elsewhere, or change it", shown(*time), beyond(particles, *depth))]
+    /// The start is beyond what a contact or limit allows. Nothing says on which side it belongs, so it is not moved.
+    #[error(
+        "at t = {} s {} beyond what `{constraint}` allows: start elsewhere, or change it",
+        shown(*time), beyond(particles, *depth)
+    )]
     Penetrates {
-        /// t [s].
+        /// t \[s\].
         time: f64,
         /// The constraint that is violated most.
         constraint: String,
         /// The particles that it names.
         particles: Vec<String>,
-        /// How far C is below zero [m].
+        /// How far C is below zero \[m\].
         depth: f64,
     },
     /// No positions that satisfy the constraints were found nearby.
-    #[error("at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}", shown(*time))]
+    #[error(
+        "at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}",
+        shown(*time)
+    )]
     NotSatisfied {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
         /// The worst row of the best try.
         row: String,
-        /// Its |C| [C].
+        /// Its |C| \[C\].
         residual: f64,
     },
     /// The frame would need more substeps than allowed.
     #[error("at t = {} s the frame needs more than {max_substeps} substeps", shown(*time))]
     TooManySubsteps {
-        /// t of the last good state [s].
+        /// t of the last good state \[s\].
         time: f64,
         /// The limit in force.
         max_substeps: usize,
@@ -87,11 +106,11 @@ pub enum StepError {
     Settings(#[from] SettingsError),
 }
 
-/// Who is how far beyond something.
+/// The names of particles, and how far they are beyond a surface or limit.
 fn beyond(particles: &[String], depth: f64) -> String {
     let names: Vec<String> = particles.iter().map(|name| format!("`{name}`")).collect();
     let verb = if names.len() == 1 { "is" } else { "are" };
-    // What rounds to nothing is shown as it is.
+    // A depth that rounds to zero is shown with an exponent.
     let depth = if depth < 1e-6 { format!("{depth:.1e}") } else { shown(depth).to_string() };
     format!("{} {verb} {depth} m", names.join(" and "))
 }

@@ -1,5 +1,5 @@
-//! **qhat**: exact constrained particle dynamics. Rods do not stretch, loops stay closed, and the force in every constraint
-//! is known.
+//! **qhat**: exact constrained particle dynamics. Rods do not stretch, loops stay closed, and the force in every
+//! constraint is known.
 //!
 //! ```
 //! use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
@@ -26,39 +26,39 @@
 //!
 //! # The five things one does
 //!
-//! **Model.** A [`System::builder`] collects [`Particle`]s, constraints and forces, and gives an id for each. [`Body`] makes
-//! rigid bodies of particles and rods, [`rigid_rods`] holds a cluster of particles together.
+//! **Model.** A [`System::builder`] collects [`Particle`]s, constraints and forces, and gives an id for each. [`Body`]
+//! makes rigid bodies of particles and rods, [`rigid_rods`] holds a cluster of particles together.
 //!
 //! **Hold.** A constraint keeps a function of the positions at zero, exactly:
 //!
 //! | to hold | there are |
 //! |---|---|
 //! | a distance | [`Distance`], [`Limits`] (a rope, a strut), [`Lengths`] (a rope over pulleys) |
-//! | a place | [`Nail`], [`Relation`], [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] with a [`Curve`] |
+//! | a place | [`Nail`], [`Relation`], [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] |
 //! | a direction or angle | [`Direction`], [`Angle`] (a motor), [`Gears`] |
 //! | an area or a volume | [`Area`], [`Volume`] |
 //! | a side of a surface | [`Obstacle`] with a [`Surface`], restitution and friction |
-//! | a function of one's own | [`ExpressionConstraint`] with an [`Expression`] |
+//! | a function of one's own | [`ExpressionConstraint`] from a text, [`CustomConstraint`] from a [`Custom`] in Rust |
 //!
 //! A number that is [`Driven`] follows a function of time: `Driven::text("2*pi*t")`.
 //!
-//! **Push.** Forces: [`Gravity`], [`Drag`], [`AirDrag`], [`Spring`], [`CubicSpring`], [`TorsionSpring`], [`PointForce`],
-//! [`HarmonicForce`], [`Actuator`], [`CentralForce`], [`InverseSquare`], [`Pressure`], [`Gas`], [`ExpressionForce`],
-//! [`ExpressionPotential`].
+//! **Push.** Forces: [`Gravity`], [`Drag`], [`AirDrag`], [`Spring`], [`CubicSpring`], [`TorsionSpring`],
+//! [`PointForce`], [`HarmonicForce`], [`Actuator`], [`CentralForce`], [`InverseSquare`], [`Pressure`], [`Gas`],
+//! [`ExpressionForce`], [`ExpressionPotential`], [`CustomForce`].
 //!
-//! **Step.** [`Simulation::step`] and [`Simulation::advance`] go on by a frame and tell in a [`StepReport`] how well the
-//! constraints hold, which [`Event`]s happened and what to be warned of. [`Settings`] choose the [`Integrator`], the frame
-//! and the tolerance. [`run_all`] and [`step_all`] run many simulations on every core. Below all this are two pure
-//! functions, [`evaluate`] and [`step`].
+//! **Step.** [`Simulation::step`] and [`Simulation::advance`] go on by a frame and tell in a [`StepReport`] how well
+//! the constraints hold, which [`Event`]s happened and what to be warned of. [`Settings`] choose the [`Integrator`],
+//! the frame and the tolerance. [`run_all`] and [`step_all`] run many simulations on every core. Below all this are two
+//! pure functions, [`evaluate`] and [`step`].
 //!
-//! **Look.** [`Simulation::links`] for tensions, [`reaction`](Simulation::reaction) for the multipliers of a constraint,
-//! [`support`](Simulation::support) for the force on the ground, [`energy`](Simulation::energy), and [`Terms`] for every
-//! symbol of the equation. Between steps, [`Simulation::set_force`] changes a force, and [`Simulation::grab`] takes hold of
-//! a particle.
+//! **Look.** [`Simulation::links`] for tensions, [`reaction`](Simulation::reaction) for the multipliers of a
+//! constraint, [`support`](Simulation::support) for the force on the ground, [`energy`](Simulation::energy), and
+//! [`Terms`] for every symbol of the equation. Between steps, [`Simulation::set_force`] changes a force, and
+//! [`Simulation::grab`] takes hold of a particle.
 //!
 //! Everything is f64 in SI units. Vectors are flat, particle after particle (x1 y1 x2 y2 …); where a function takes one
-//! vector, it takes `[f64; 2]` and `[f64; 3]` alike. No files, no network, no printing; the same input gives the same bits
-//! on every target.
+//! vector, it takes `[f64; 2]` and `[f64; 3]` alike. No files, no network, no printing; the same input gives the same
+//! bits on every target.
 //!
 //! # Words
 //!
@@ -67,13 +67,16 @@
 //! | scene | Rust |
 //! |---|---|
 //! | `kind = "distance"` | [`Distance::new`]; with a `length` of t [`Distance::driven`] |
-//! | `rope`, `strut`, `limits` | [`Rope::new`], [`Strut::new`], [`Limits::between`] |
+//! | `rope`, `limits` | [`Rope::new`], [`Limits`] (with a shortest length alone [`Strut::new`]) |
 //! | `nail` | [`Nail::new`]; at a point of t [`Nail::driven`] |
 //! | `pulley`, `length-ratio` | [`Lengths::pulley`], [`Lengths::ratio`] |
-//! | `coincidence`, `midpoint`, `center-of-mass` | [`Relation::coincidence`], [`Relation::midpoint`], [`Relation::center_of_mass`] |
+//! | `coincidence`, `midpoint` | [`Relation::coincidence`], [`Relation::midpoint`] |
+//! | `center-of-mass` | [`Relation::center_of_mass`] |
 //! | `line`, `plane`, `sphere`, `circle`, `curve` | [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] |
 //! | `rigid` | [`rigid_rods`] and [`Distance`] |
-//! | `ground`, `wall`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
+//! | `half-space`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
+//! | `angle`, `gears`, `rack` | [`Angle`], [`Gears`], [`Gears::rack`] |
+//! | `expression` | [`ExpressionConstraint`] |
 //! | `fixed = true` | [`Particle::fixed`] |
 //! | `integrator = "implicit"` or `"backward-euler"` | [`Integrator::Implicit`] |
 //! | `[forces] gravity`, `drag` | [`Gravity`], [`Drag`] |
@@ -107,14 +110,12 @@
 //! opt-level = 3
 //! ```
 //!
-//! MEASURED
-//!
 //! # Features
 //!
 //! | feature | default | what it adds |
 //! |---|---|---|
 //! | `rayon` | yes | threads; without it, the same bits on one |
-//! | `serde` | no | `Serialize` and `Deserialize` for settings, reports, events, energies, warnings and ids; `Serialize` for terms |
+//! | `serde` | no | `Serialize`, `Deserialize` for settings, reports, energies and ids; `Serialize` for terms |
 //! | `mint` | no | points and vectors of other crates wherever a [`Vector`] goes |
 
 // The letters of the derivations are the letters of the code: Q, W, C, J, A and λ keep their case.

@@ -1,4 +1,4 @@
-//! What a step tells.
+//! Reports: what happened in a step, and what a user should know of it.
 
 use crate::drift::Drift;
 use crate::energy::Energy;
@@ -13,15 +13,15 @@ use std::fmt;
 pub struct StepReport {
     /// Substeps taken (1 for a step of a fixed-step integrator).
     pub substeps: usize,
-    /// Substeps tried and taken back.
+    /// Substeps rejected and tried again, shorter.
     pub rejected: usize,
     /// Factorizations of A; what goes in lanes is factored in every solve and not counted.
     pub factorizations: usize,
     /// Newton iterations on C(q) = 0.
     pub iterations: usize,
-    /// The smallest substep [s].
+    /// The smallest substep \[s\].
     pub smallest_substep: f64,
-    /// max |C| over the rigid rows [C].
+    /// max |C| over the rigid rows \[C\].
     pub max_residual: f64,
     /// max |Ċ| over the rigid rows [C/s].
     pub max_residual_rate: f64,
@@ -32,22 +32,22 @@ pub struct StepReport {
     pub max_tension: Option<MaxTension>,
     /// Energies at the end.
     pub energy: Energy,
-    /// Who carried the state; with auto, whom it chose.
+    /// The integrator that advanced this frame; under `auto`, the one that it chose.
     pub integrator: Integrator,
-    /// By which path the constraints were solved.
+    /// The path to the multipliers.
     pub solver: Solver,
-    /// Contacts that opened, closed, slipped or stuck, and what broke, in their order.
+    /// Contacts that opened, closed, slipped or stuck, and links that broke, in the order of time.
     pub events: Vec<Event>,
-    /// What a user should know.
+    /// Conditions that did not stop the step, and that a user should know of.
     pub warnings: Vec<Warning>,
 }
 
-/// Something that happened at a moment.
+/// An event: a constraint began or ceased to act.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Event {
-    /// t [s].
+    /// t \[s\].
     pub time: f64,
     /// The name of the constraint.
     pub constraint: String,
@@ -60,20 +60,20 @@ pub struct Event {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum EventKind {
-    /// It was hit faster than what rests.
+    /// An impact with a closing speed above the rest speed.
     Impact {
         /// The speed at which it closed in [m/s].
         speed: f64,
     },
-    /// It acts from now on: a rope went taut, something came to lie on the ground.
+    /// The constraint acts from now on: a rope went taut, a particle came to rest on the ground.
     Closed,
-    /// It does not act any more.
+    /// The constraint no longer acts.
     Opened,
-    /// What stuck to it slips.
+    /// A contact that stuck begins to slip.
     Slipped,
-    /// What slipped sticks to it.
+    /// A contact that slipped sticks.
     Stuck,
-    /// It broke, for good.
+    /// The link broke, for good.
     Broke,
 }
 
@@ -82,11 +82,11 @@ pub enum EventKind {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MaxTension {
-    /// The tension [N], negative if it is a thrust.
+    /// The tension \[N\], negative if it is a thrust.
     pub tension: f64,
     /// The rod, rope or strut.
     pub link: ConstraintId,
-    /// t [s].
+    /// t \[s\].
     pub time: f64,
 }
 
@@ -180,7 +180,7 @@ pub enum Solver {
     /// Rows of A = J W Jᵀ, each component by its own method: see [`crate::System::components`].
     #[default]
     Rows,
-    /// Open chains in eight lanes.
+    /// Open chains, eight side by side.
     Chains,
     /// Newton's method at the end of the step, with geometric stiffness.
     EndOfStep,
@@ -210,23 +210,23 @@ pub enum Warning {
     },
     /// Auto went over to bdf2: accurate substeps would have taken more work than a frame is allowed.
     TooStiff {
-        /// How many it is allowed.
+        /// The number of substeps that the frame is allowed.
         substeps: usize,
     },
     /// RATTLE could not meet the constraints with substeps of any length: dopri5 carried the frame on.
     HandedOver {
-        /// t where it took over [s].
+        /// t where it took over \[s\].
         time: f64,
     },
     /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
     BudgetSpent {
-        /// t of the end of the step [s].
+        /// t of the end of the step \[s\].
         time: f64,
         /// Newton iterations of the frame.
         iterations: usize,
         /// The worst row.
         row: String,
-        /// What it is off by, relative to its own size.
+        /// Its |C| relative to its own scale.
         relative: f64,
     },
 }
@@ -235,39 +235,44 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::Singular => f.write_str(
-                "A = J W Jᵀ is singular: some constraints repeat what others say; the multipliers shown are the smallest that do it",
+                "A = J W Jᵀ is singular: some constraints repeat what others say; the multipliers shown are the \
+                 smallest that do it",
             ),
             Warning::NoGradient { rows } => write!(
                 f,
-                "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it (diagonal drag hides this)",
+                "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it \
+                 (diagonal drag hides this)",
                 rows.join(", ")
             ),
             Warning::TooStiff { substeps } => write!(
                 f,
-                "the motion is too stiff to be followed accurately in the {substeps} substeps that frame_work and max_substeps allow a frame, so bdf2 carries it: rods hold, fast oscillations are damped"
+                "the motion is too stiff to be followed accurately in the {substeps} substeps that frame_work and \
+                 max_substeps allow a frame, so bdf2 carries it: rods hold, fast oscillations are damped"
             ),
             Warning::HandedOver { time } => write!(
                 f,
-                "rattle could not meet the constraints at t = {time:.4} s with any substep, so dopri5 carried the frame on"
+                "rattle could not meet the constraints at t = {time:.4} s with any substep, so dopri5 carried the \
+                 frame on"
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,
-                "the frame budget ran out at t = {time:.4} s after {iterations} Newton iterations: `{row}` is off by {relative:.1e} of its size"
+                "the frame budget ran out at t = {time:.4} s after {iterations} Newton iterations: \
+                 `{row}` is off by {relative:.1e} of its size"
             ),
         }
     }
 }
 
-/// What it took to bring a state onto C = 0 and Ċ = 0.
+/// The change that brought a state onto C = 0 and Ċ = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Projection {
-    /// The farthest any particle was moved [m]; 0 if the state was consistent.
+    /// The farthest any particle was moved \[m\]; 0 if the state was consistent.
     pub moved: f64,
     /// The largest change of a particle's velocity [m/s]; 0 if it was consistent.
     pub velocity_changed: f64,
-    /// max |C| before [C].
+    /// max |C| before \[C\].
     pub residual_before: f64,
     /// Newton iterations on C(q) = 0.
     pub iterations: usize,

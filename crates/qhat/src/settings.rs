@@ -15,7 +15,8 @@ pub enum Integrator {
     SymplecticEuler,
     /// The classical Runge–Kutta method, order 4. Drifts slowly off the constraints.
     Rk4,
-    /// [`Integrator::Dop853`] where a frame can be followed with the work allowed, [`Integrator::Bdf2`] where it cannot.
+    /// [`Integrator::Dop853`] where a frame can be followed with the work allowed, [`Integrator::Bdf2`] where it
+    /// cannot.
     #[default]
     Auto,
     /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
@@ -70,12 +71,14 @@ impl Integrator {
         matches!(self, Integrator::Auto | Integrator::Dopri5 | Integrator::Dop853)
     }
 
-    /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in need).
+    /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in
+    /// need).
     pub fn is_implicit(self) -> bool {
         matches!(self, Integrator::Implicit | Integrator::Bdf2)
     }
 
-    /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of [`Feedback`]).
+    /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of
+    /// [`Feedback`]).
     pub fn projects(self) -> bool {
         self.is_adaptive() || self.is_implicit()
     }
@@ -118,7 +121,8 @@ pub struct Feedback {
     pub ks: f64,
     /// kd [1/s], ≥ 0, default 0: pulls Ċ to zero.
     pub kd: f64,
-    /// ε [units of A], ≥ 0, default 0: added to the diagonal of A, so that a singular A can be solved; softens every row.
+    /// ε [units of A], ≥ 0, default 0: added to the diagonal of A, so that a singular A can be solved; softens every
+    /// row.
     pub diagonal_drag: f64,
     /// In [0, 1), default 0: the constraint force is scaled by s = 1 − elasticity.
     pub elasticity: f64,
@@ -146,7 +150,7 @@ impl Feedback {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Settings {
-    /// h [s], > 0, default 0.01: the step of a fixed-step integrator, the frame of an adaptive one.
+    /// h \[s\], > 0, default 0.01: the step of a fixed-step integrator, the frame of an adaptive one.
     pub h: f64,
     /// Default [`Integrator::Auto`].
     pub integrator: Integrator,
@@ -156,12 +160,13 @@ pub struct Settings {
     pub constraint_tolerance: f64,
     /// Of adaptive integrators: substeps in one frame after which they give up, ≥ 1, default 200 000.
     pub max_substeps: usize,
-    /// Of implicit and bdf2: Newton iterations a frame, ≥ 1, default 10 000. A count and not a time, so that the same input
-    /// gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far that is.
+    /// Of implicit and bdf2: Newton iterations a frame, ≥ 1, default 10 000. A count and not a time, so that the same
+    /// input gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far
+    /// that is.
     pub frame_budget: usize,
-    /// Of auto: row solves a frame before it goes over to bdf2, ≥ 1, default 20 million. A row takes some 5 ns in a chain, and
-    /// counts sixteenfold in anything else: at the default a frame waits for some tenths of a second. A page that is to be
-    /// in time takes a million.
+    /// Of auto: row solves a frame before it goes over to bdf2, ≥ 1, default 20 million. A row takes some 5 ns in a
+    /// chain, and counts sixteenfold in anything else: at the default a frame waits for some tenths of a second. A page
+    /// that is to be in time takes a million.
     pub frame_work: usize,
 }
 
@@ -226,9 +231,9 @@ pub enum SettingsError {
     /// A frame that steps of h do not fill.
     #[error("a frame of {frame} s is no multiple of the step h = {h} s")]
     FrameNotMultiple {
-        /// Length of the frame [s].
+        /// Length of the frame \[s\].
         frame: f64,
-        /// The step [s].
+        /// The step \[s\].
         h: f64,
     },
 }

@@ -6,9 +6,9 @@
 //! (A + R) λ = −(γ + J W Q) − ks C − kd Ċ           R in the units of A, ks [1/s²], kd [1/s]
 //! ```
 //!
-//! with forces λ. At rest under a load C = −R λ/ks: its compliance is α = R/ks. Every other notation says the same with other
-//! letters; each function here says which. Those of velocity level (ODE, the implicit spring, Box2D) leave out γ, which is of
-//! the order of their own error; XPBD takes the next step's linearisation instead.
+//! with forces λ. At rest under a load C = −R λ/ks: its compliance is α = R/ks. Every other notation says the same with
+//! other letters; each function here says which. Those of velocity level (ODE, the implicit spring, Box2D) leave out γ,
+//! which is of the order of their own error; XPBD takes the next step's linearisation instead.
 //!
 //! | elsewhere | R | ks | kd |
 //! |---|---|---|---|
@@ -19,8 +19,8 @@
 //! | Box2D's f, ζ; ω = 2π f | A_ii/(h ω (2 ζ + h ω)) | ω/(h (2 ζ + h ω)) | 1/h |
 //! | XPBD's α | α/h² | 1/h² | 1/h |
 //!
-//! Sources: Smith, Open Dynamics Engine User Guide (ERP, CFM); Catto, Soft Constraints, GDC 2011, and Box2D 3 (hertz, damping
-//! ratio); Macklin, Müller, Chentanez, XPBD (2016).
+//! Sources: Smith, Open Dynamics Engine User Guide (ERP, CFM); Catto, Soft Constraints, GDC 2011, and Box2D 3 (hertz,
+//! damping ratio); Macklin, Müller, Chentanez, XPBD (2016).
 
 /// R, ks and kd of one soft row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,34 +39,35 @@ impl SoftRow {
         SoftRow { R: epsilon, ks, kd }
     }
 
-    /// The source's elasticity in [0, 1), which scales Q̂ by s = 1 − elasticity, on a row coupled to no other: `diagonal` is its
-    /// A_ii. The λ of this row is what is applied, s times the λ of the equation without R. (For coupled rows R is
-    /// (1/s − 1) A, the whole matrix.)
+    /// The source's elasticity in [0, 1), which scales Q̂ by s = 1 − elasticity, on a row coupled to no other:
+    /// `diagonal` is its A_ii. The λ of this row is what is applied, s times the λ of the equation without R. (For
+    /// coupled rows R is (1/s − 1) A, the whole matrix.)
     pub fn from_elasticity(elasticity: f64, diagonal: f64, ks: f64, kd: f64) -> Self {
         let s = 1.0 - elasticity;
         SoftRow { R: (1.0 / s - 1.0) * diagonal, ks, kd }
     }
 
-    /// ODE's error reduction parameter [1] and constraint force mixing [C²/(m² kg) · s] at a step of h [s].
+    /// ODE's error reduction parameter \[1\] and constraint force mixing [C²/(m² kg) · s] at a step of h \[s\].
     pub fn from_erp_cfm(erp: f64, cfm: f64, h: f64) -> Self {
         SoftRow { R: cfm / h, ks: erp / (h * h), kd: 1.0 / h }
     }
 
-    /// A spring of stiffness k [N/m] and damping c [N·s/m] along the row, taken at the end of a step of h [s]. Not both zero.
+    /// A spring of stiffness k [N/m] and damping c [N·s/m] along the row, taken at the end of a step of h \[s\]. Not
+    /// both zero.
     pub fn from_implicit_spring(stiffness: f64, damping: f64, h: f64) -> Self {
         let stiff = h * (h * stiffness + damping);
         SoftRow { R: 1.0 / stiff, ks: stiffness / stiff, kd: 1.0 / h }
     }
 
-    /// Box2D's and Rapier's natural frequency f [Hz] and damping ratio ζ at a substep of h [s], for a row whose A_ii is
-    /// `diagonal`.
+    /// Box2D's and Rapier's natural frequency f \[Hz\] and damping ratio ζ at a substep of h \[s\], for a row whose
+    /// A_ii is `diagonal`.
     pub fn from_hertz(hertz: f64, damping_ratio: f64, diagonal: f64, h: f64) -> Self {
         let omega = 2.0 * std::f64::consts::PI * hertz;
         let reach = h * (2.0 * damping_ratio + h * omega);
         SoftRow { R: diagonal / (omega * reach), ks: omega / reach, kd: 1.0 / h }
     }
 
-    /// XPBD's compliance α [m/N for a row in m] at a step of h [s].
+    /// XPBD's compliance α [m/N for a row in m] at a step of h \[s\].
     pub fn from_xpbd(compliance: f64, h: f64) -> Self {
         SoftRow { R: compliance / (h * h), ks: 1.0 / (h * h), kd: 1.0 / h }
     }

@@ -14,7 +14,7 @@ pub struct State {
     pub(crate) carry: Option<Carry>,
 }
 
-/// Energy that has crossed the borders of the system since t = 0 [J]; positive into it.
+/// Energy that has crossed the borders of the system since t = 0 \[J\]; positive into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
@@ -29,7 +29,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// All of it [J].
+    /// All of it \[J\].
     pub fn total(&self) -> f64 {
         self.dissipation + self.stabilization + self.external + self.drives
     }
@@ -66,7 +66,7 @@ impl State {
         State { q, qd, t: 0.0, work: Work::default(), modes: Modes::default(), carry: None }
     }
 
-    /// q [m], d·n numbers, particle after particle.
+    /// q \[m\], d·n numbers, particle after particle.
     pub fn positions(&self) -> &[f64] {
         &self.q
     }
@@ -76,7 +76,7 @@ impl State {
         &self.qd
     }
 
-    /// t [s].
+    /// t \[s\].
     pub fn time(&self) -> f64 {
         self.t
     }
@@ -86,7 +86,8 @@ impl State {
         self.work
     }
 
-    /// The same state with other positions [m] and velocities [m/s], d·n numbers each; t, the work and what is broken stay.
+    /// The same state with other positions \[m\] and velocities [m/s], d·n numbers each; t, the work and what is broken
+    /// stay.
     ///
     /// # Panics
     /// If the lengths differ from d·n.
@@ -98,7 +99,7 @@ impl State {
         state
     }
 
-    /// The same state with other positions [m] and velocities [m/s].
+    /// The same state with other positions \[m\] and velocities [m/s].
     #[deprecated(since = "0.1.0", note = "use `with_motion`")]
     pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         self.with_motion(positions, velocities)

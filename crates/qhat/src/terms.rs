@@ -15,17 +15,17 @@ use crate::system::System;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Terms {
-    /// t [s].
+    /// t \[s\].
     pub time: f64,
-    /// q, N [m].
+    /// q, N \[m\].
     pub positions: Vec<f64>,
     /// q̇, N [m/s].
     pub velocities: Vec<f64>,
     /// W, one number a particle, n [1/kg].
     pub inverse_masses: Vec<f64>,
-    /// Q, those of rods that give way included, N [N].
+    /// Q, those of rods that give way included, N \[N\].
     pub applied_forces: Vec<f64>,
-    /// C, m [C].
+    /// C, m \[C\].
     pub residual: Vec<f64>,
     /// Ċ, m [C/s].
     pub residual_rate: Vec<f64>,
@@ -47,11 +47,11 @@ pub struct Terms {
     pub right_hand_side: Vec<f64>,
     /// λ, m [J/C].
     pub multipliers: Vec<f64>,
-    /// Q̂ = s Jᵀλ over the rigid rows, as applied, N [N].
+    /// Q̂ = s Jᵀλ over the rigid rows, as applied, N \[N\].
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,
-    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied [N]; positive if it pulls
+    /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied \[N\]; positive if it pulls
     /// its ends together.
     pub tension: Vec<f64>,
     /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.

@@ -1,5 +1,5 @@
-//! Work on several threads, where there are any: natively with the feature `rayon`; else, and in the browser, one thing after
-//! the other.
+//! Work on several threads, where there are any: natively with the feature `rayon`; else, and in the browser, one thing
+//! after the other.
 //!
 //! Tasks are independent of each other and are cut the same way on any number of threads, so the bits do not depend on
 //! the number of threads. `RAYON_NUM_THREADS=1` keeps all work on one thread.

@@ -104,6 +104,7 @@ struct Job {
 impl Job {
     /// Steps from frame to frame. Returns the reason where the run ends early.
     fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
+        simulation.record_tension(true);
         self.tally.moved = simulation.projection().moved;
         let terms = simulation.terms();
         self.start(simulation.system(), &terms)?;
@@ -116,7 +117,7 @@ impl Job {
             self.tally.cpu += clock.elapsed();
             self.tally.reached(&simulation);
             match outcome {
-                Ok(report) => self.tally.step(&report),
+                Ok(report) => self.tally.step(simulation.system(), &report),
                 // The frame is no multiple of h, so the options are at fault. The state is unchanged.
                 Err(StepError::Settings(error)) => return Err(self.frames.refused(&error, simulation.settings())),
                 Err(error) => return Ok(Some(Stop::Error(error))),

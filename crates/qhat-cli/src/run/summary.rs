@@ -32,6 +32,17 @@ pub(crate) struct Tally {
     /// The number of frames of each integrator and solver, in the order of their first frames.
     carried: Vec<Carried>,
     events: Events,
+    max_tension: Option<MaxTension>,
+}
+
+/// The largest tension or thrust of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct MaxTension {
+    /// \[N\]; negative if it is a thrust.
+    tension: f64,
+    link: String,
+    /// \[s\].
+    time: f64,
 }
 
 /// The number of frames that one integrator advanced with one solver of the multipliers.
@@ -62,12 +73,18 @@ impl Tally {
     }
 
     /// Notes the report of a step to the next frame.
-    pub(super) fn step(&mut self, report: &StepReport) {
+    pub(super) fn step(&mut self, system: &System, report: &StepReport) {
         self.substeps += report.substeps;
         self.rejected += report.rejected;
         self.max_residual = self.max_residual.max(report.max_residual);
         self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
         self.carry(report.integrator, report.solver);
+        if let Some(largest) = report.max_tension
+            && self.max_tension.as_ref().is_none_or(|former| former.tension.abs() < largest.tension.abs())
+        {
+            let link = system.constraint_of(largest.link).name.clone();
+            self.max_tension = Some(MaxTension { tension: largest.tension, link, time: largest.time });
+        }
         report.events.iter().for_each(|event| self.events.note(event));
         report.warnings.iter().for_each(|warning| self.warn(warning));
     }
@@ -126,6 +143,7 @@ pub(crate) struct Summary<'a> {
     max_relative_length_error: f64,
     energy_error: f64,
     energy_error_max: f64,
+    max_tension: Option<&'a MaxTension>,
     warnings: &'a [String],
     output: Option<String>,
 }
@@ -152,6 +170,7 @@ impl<'a> Summary<'a> {
             max_relative_length_error: tally.max_relative_length_error,
             energy_error: tally.energy_error,
             energy_error_max: tally.energy_error_max,
+            max_tension: tally.max_tension.as_ref(),
             warnings: &tally.warnings,
             output,
         }
@@ -191,6 +210,10 @@ impl<'a> Summary<'a> {
                 ),
             ),
         ];
+        if let Some(MaxTension { tension, link, time }) = self.max_tension {
+            let line = format!("at most {} N in {link} at {time:.2} s", significant(*tension));
+            lines.insert(lines.len() - 1, ("tension", line));
+        }
         if let Some(carriers) = self.carriers() {
             lines.insert(2, ("carried by", carriers));
         }
@@ -202,5 +225,27 @@ impl<'a> Summary<'a> {
         lines
             .push(("output", self.output.clone().unwrap_or_else(|| "none; -o FILE.npz or FILE.csv writes one".into())));
         print::table(&format!("{}: {}", self.scene, self.status), &lines)
+    }
+}
+
+/// A force in four digits, without an exponent.
+fn significant(force: f64) -> String {
+    if force == 0.0 {
+        return "0".into();
+    }
+    let decimals = (3 - force.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    format!("{force:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn forces_have_four_digits() {
+        assert_eq!(
+            [2023.4, -0.123_46, 19.62, 0.0, 123_456.0].map(significant),
+            ["2023", "-0.1235", "19.62", "0", "123456"]
+        );
     }
 }

@@ -82,11 +82,11 @@ pub enum GeometryError {
         "a radius of {radius} m is too large for the corner at points[{point}]: the largest that fits is {largest} m"
     )]
     WireRadius {
-        /// The radius [m].
+        /// The radius \[m\].
         radius: f64,
         /// The point at the corner.
         point: usize,
-        /// The largest radius that fits [m].
+        /// The largest radius that fits \[m\].
         largest: f64,
     },
     /// A cluster has fewer than two particles.

@@ -43,7 +43,7 @@ pub enum ValueError {
     /// The tension that breaks a rod or rope is not positive and finite.
     #[error("the tension at which something breaks must be positive and finite, but is {value}")]
     Strength {
-        /// The tension [N].
+        /// The tension \[N\].
         value: f64,
     },
     /// A driven number depends on positions or velocities.

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
-    /// A mass that is not positive and finite [kg].
+    /// A mass that is not positive and finite \[kg\].
     #[error("the mass of a body must be above 0, but is {0} kg")]
     Mass(f64),
     /// A coordinate or moment that is not finite.

@@ -61,9 +61,9 @@ const FLAT: f64 = 1e-12;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// x_i, the positions of the particles [m].
+    /// x_i, the positions of the particles \[m\].
     pub points: Vec<[f64; 3]>,
-    /// m_i, the masses of the particles [kg], positive.
+    /// m_i, the masses of the particles \[kg\], positive.
     pub masses: Vec<f64>,
     /// The two particles of each rod.
     pub rods: Vec<[usize; 2]>,
@@ -72,12 +72,12 @@ pub struct Body {
 }
 
 impl Body {
-    /// A uniform body over the edges e_k [m] around a centre [m]: a thin bar (one edge), a plate (two) or a block
+    /// A uniform body over the edges e_k \[m\] around a centre \[m\]: a thin bar (one edge), a plate (two) or a block
     /// (three), not necessarily with right angles. It has two, three or four particles. A bar in space has no spin
     /// about itself.
     ///
     /// # Errors
-    /// A mass [kg] that is not positive; numbers that are not finite; edges that are linearly dependent.
+    /// A mass \[kg\] that is not positive; numbers that are not finite; edges that are linearly dependent.
     pub fn block(mass: f64, centre: [f64; 3], edges: &[[f64; 3]]) -> Result<Self, BodyError> {
         check(mass, edges.iter().chain([&centre]))?;
         if !(1..=3).contains(&edges.len()) {
@@ -100,7 +100,7 @@ impl Body {
         Body::simplex(mass, centre, &g)
     }
 
-    /// A uniform triangular plate with these corners [m]: a third of its mass [kg] at the middle of each side.
+    /// A uniform triangular plate with these corners \[m\]: a third of its mass \[kg\] at the middle of each side.
     ///
     /// # Errors
     /// A mass that is not positive; numbers that are not finite; corners in a line.
@@ -116,7 +116,7 @@ impl Body {
         Body::complete(vec![middle(a, b), middle(b, c), middle(c, a)], vec![mass / 3.0; 3])
     }
 
-    /// A body in space of a given mass [kg], centre [m] and inertia tensor about the centre [kg m²].
+    /// A body in space of a given mass \[kg\], centre \[m\] and inertia tensor about the centre [kg m²].
     ///
     /// # Errors
     /// A mass that is not positive; numbers that are not finite; a tensor that is not symmetric, or that no body has (a
@@ -134,7 +134,7 @@ impl Body {
         Body::simplex(mass, centre, &factor(S)?)
     }
 
-    /// A body in the plane of a given mass [kg], centre [m] and moment of inertia about the centre [kg m²]: three
+    /// A body in the plane of a given mass \[kg\], centre \[m\] and moment of inertia about the centre [kg m²]: three
     /// particles at the radius of gyration.
     ///
     /// # Errors
@@ -149,7 +149,7 @@ impl Body {
         Body::simplex(mass, centre, &[[g, 0.0, 0.0], [0.0, g, 0.0]])
     }
 
-    /// A uniform thin bar in the plane with a particle at each end [m], so that it can be nailed there.
+    /// A uniform thin bar in the plane with a particle at each end \[m\], so that it can be nailed there.
     ///
     /// Three particles in its line (m/6, 4m/6, m/6) have its moments, too, but rods in one line cannot hold them
     /// without the constraint of [`bar_in_space`](Self::bar_in_space). Here the middle is two particles at ±w beside
@@ -157,7 +157,7 @@ impl Body {
     /// 2 · 11/72 · (L/2)² + 2 · 25/72 · (L/10)² = L²/12. Particles 0 and 1 are the ends.
     ///
     /// # Errors
-    /// A mass [kg] that is not positive; numbers that are not finite; ends at the same place.
+    /// A mass \[kg\] that is not positive; numbers that are not finite; ends at the same place.
     pub fn bar_in_plane(mass: f64, ends: [[f64; 2]; 2]) -> Result<Self, BodyError> {
         let [a, b] = ends.map(|end| [end[0], end[1], 0.0]);
         check(mass, [&a, &b])?;
@@ -174,7 +174,7 @@ impl Body {
         body.told_apart()
     }
 
-    /// A uniform thin bar in space with a particle at each end [m], so that it can be nailed there: m/6 at each end,
+    /// A uniform thin bar in space with a particle at each end \[m\], so that it can be nailed there: m/6 at each end,
     /// 4m/6 in the middle.
     ///
     /// The bar has no moment about itself, so its particles lie in one line. Rods cannot hold them: a third rod
@@ -183,7 +183,7 @@ impl Body {
     /// 1 are the ends.
     ///
     /// # Errors
-    /// A mass [kg] that is not positive; numbers that are not finite; ends at the same place.
+    /// A mass \[kg\] that is not positive; numbers that are not finite; ends at the same place.
     pub fn bar_in_space(mass: f64, ends: [[f64; 3]; 2]) -> Result<Self, BodyError> {
         check(mass, &ends)?;
         let [a, b] = ends;
@@ -196,7 +196,7 @@ impl Body {
         body.told_apart()
     }
 
-    /// c [m].
+    /// c \[m\].
     pub fn center(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (&point, &mass) in self.points.iter().zip(&self.masses) {
@@ -212,7 +212,7 @@ impl Body {
         turning.map(|turning| std::array::from_fn(|k| v[k] + turning[k])).collect()
     }
 
-    /// The length of a rod [m].
+    /// The length of a rod \[m\].
     pub fn length(&self, rod: usize) -> f64 {
         let [a, b] = self.rods[rod];
         norm(minus(self.points[a], self.points[b]))

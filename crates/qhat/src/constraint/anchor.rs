@@ -12,7 +12,7 @@ pub type DrivenPoint = [Driven; 3];
 /// The point that a constraint measures from: a point, fixed or driven, or a particle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Anchor {
-    /// p(t) [m].
+    /// p(t) \[m\].
     Point(DrivenPoint),
     /// The position of a particle.
     Particle(ParticleId),

@@ -37,12 +37,12 @@ pub struct Angle {
 }
 
 impl Angle {
-    /// The angle α [rad] from the arm `from` to the arm `to`, each from the first of its particles to the second.
+    /// The angle α \[rad\] from the arm `from` to the arm `to`, each from the first of its particles to the second.
     pub fn between(from: [ParticleId; 2], to: [ParticleId; 2], angle: impl Into<Driven>) -> Self {
         Angle { arms: Arms::new([from, to]), direction: [0.0; 3], angle: angle.into() }
     }
 
-    /// The angle α [rad] from a direction of any length to the arm `to`. The third component of the direction is
+    /// The angle α \[rad\] from a direction of any length to the arm `to`. The third component of the direction is
     /// ignored in two dimensions.
     pub fn from_direction(direction: [f64; 3], to: [ParticleId; 2], angle: impl Into<Driven>) -> Self {
         Angle { arms: Arms::new([to]), direction, angle: angle.into() }

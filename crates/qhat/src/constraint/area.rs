@@ -22,7 +22,7 @@ use crate::space::ParticleId;
 pub struct Area {
     /// The corners in order, three or more, each particle once.
     pub corners: Vec<ParticleId>,
-    /// A [m²], positive where the corners run counterclockwise.
+    /// A \[m²\], positive where the corners run counterclockwise.
     pub area: Driven,
 }
 

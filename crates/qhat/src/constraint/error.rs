@@ -69,9 +69,9 @@ pub enum ConstraintError {
          a rod holds one length"
     )]
     LimitsCrossed {
-        /// L₀ [m].
+        /// L₀ \[m\].
         shortest: f64,
-        /// L₁ [m].
+        /// L₁ \[m\].
         longest: f64,
     },
     /// A relation has no particle.
@@ -107,7 +107,7 @@ pub enum ConstraintError {
     /// A sum of lengths with positive weights is to be zero or less.
     #[error("the length of a rope must be above 0, but is {length} m")]
     RopeLength {
-        /// The length at the start [m].
+        /// The length at the start \[m\].
         length: f64,
     },
     /// Both ends of an arm are the same particle.
@@ -173,7 +173,7 @@ pub enum ConstraintError {
     /// The scale of a custom constraint is not above zero.
     #[error("the scale of a custom constraint must be above 0 and finite, but is {scale}")]
     CustomScale {
-        /// The scale [C].
+        /// The scale \[C\].
         scale: f64,
     },
     /// The residual depends on velocities.
@@ -188,7 +188,7 @@ pub enum ConstraintError {
     /// The scale of the residual is not above zero.
     #[error("the scale of a residual must be above 0, but is {scale}")]
     Scale {
-        /// The scale [C].
+        /// The scale \[C\].
         scale: f64,
     },
     /// The residual does not change with positions at the start, so its scale cannot be measured there.

@@ -1,5 +1,5 @@
 //! ExpressionConstraint: a constraint C(q, t) = 0 that the user writes as text; one row. The text determines the unit
-//! [C].
+//! \[C\].
 //!
 //! ```text
 //! C, Ċ = J q̇ + C_t, γ = (∂(Jq̇)/∂q) q̇ + 2 J_t q̇ + C_tt, J and C_t     in two passes over the expression
@@ -33,7 +33,7 @@ pub struct ExpressionConstraint {
     expression: Expression,
     /// The size of the derivatives of C at the start.
     start: Start,
-    /// The scale [C], if one was given.
+    /// The scale \[C\], if one was given.
     scale: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ struct Start {
 }
 
 impl ExpressionConstraint {
-    /// A constraint that holds an expression at zero. `positions` has the positions of all particles at the start [m],
+    /// A constraint that holds an expression at zero. `positions` has the positions of all particles at the start \[m\],
     /// d·n numbers. The scale of the row is measured at these positions and t = 0.
     pub fn new(expression: Expression, positions: &[f64]) -> Self {
         let d = expression.dimension();
@@ -60,7 +60,7 @@ impl ExpressionConstraint {
         ExpressionConstraint { expression, start, scale: None }
     }
 
-    /// The same constraint with a given scale [C], above 0: the |C| that counts as a relative error of one.
+    /// The same constraint with a given scale \[C\], above 0: the |C| that counts as a relative error of one.
     pub fn with_scale(self, scale: f64) -> Self {
         ExpressionConstraint { scale: Some(scale), ..self }
     }

@@ -5,7 +5,7 @@ use super::rows::Rows;
 use crate::point::{Point, add, block, dot, scaled};
 use crate::space::ParticleId;
 
-/// J = ∂C/∂q, m × d·n, stored as one block of d numbers for each particle that a row depends on. Unit: [C]/m.
+/// J = ∂C/∂q, m × d·n, stored as one block of d numbers for each particle that a row depends on. Unit: \[C\]/m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jacobian {
     pub(crate) layout: Layout,

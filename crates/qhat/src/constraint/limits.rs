@@ -25,38 +25,38 @@ pub struct Limits {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// L₀ [m], not negative.
+    /// L₀ \[m\], not negative.
     pub shortest: Option<f64>,
-    /// L₁ [m], positive and more than L₀.
+    /// L₁ \[m\], positive and more than L₀.
     pub longest: Option<f64>,
     /// e, in [0, 1]: the part of the closing speed that an impact at a limit gives back.
     pub restitution: f64,
-    /// The tension or thrust at which the rope or strut breaks [N].
+    /// The tension or thrust at which the rope or strut breaks \[N\].
     pub breaks_at: Option<f64>,
 }
 
 impl Limits {
-    /// A rope: slack while shorter than its length [m], taut at its length.
+    /// A rope: slack while shorter than its length \[m\], taut at its length.
     pub fn rope(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None }
     }
 
-    /// A loose strut: keeps two particles at least a length [m] apart.
+    /// A loose strut: keeps two particles at least a length \[m\] apart.
     pub fn strut(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Limits { a, b, shortest: Some(length), longest: None, restitution: 0.0, breaks_at: None }
     }
 
-    /// Both limits [m].
+    /// Both limits \[m\].
     pub fn between(a: ParticleId, b: ParticleId, shortest: f64, longest: f64) -> Self {
         Limits { a, b, shortest: Some(shortest), longest: Some(longest), restitution: 0.0, breaks_at: None }
     }
 
-    /// The same with the part of the closing speed that comes back where a limit is hit [1].
+    /// The same with the part of the closing speed that comes back where a limit is hit \[1\].
     pub fn with_restitution(self, restitution: f64) -> Self {
         Limits { restitution, ..self }
     }
 
-    /// The same with the tension or thrust that it does not survive [N].
+    /// The same with the tension or thrust that it does not survive \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Limits { breaks_at: Some(tension), ..self }
     }
@@ -78,7 +78,7 @@ impl Limits {
 pub enum Rope {}
 
 impl Rope {
-    /// A rope: slack up to its length [m], and then it does not stretch. The same as [`Limits::rope`].
+    /// A rope: slack up to its length \[m\], and then it does not stretch. The same as [`Limits::rope`].
     #[expect(clippy::new_ret_no_self, reason = "a rope is one form of limits")]
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
         Limits::rope(a, b, length)
@@ -90,7 +90,7 @@ impl Rope {
 pub enum Strut {}
 
 impl Strut {
-    /// A strut that keeps two particles at least so far apart [m]. The same as [`Limits::strut`].
+    /// A strut that keeps two particles at least so far apart \[m\]. The same as [`Limits::strut`].
     #[expect(clippy::new_ret_no_self, reason = "a strut is one form of limits")]
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Limits {
         Limits::strut(a, b, length)

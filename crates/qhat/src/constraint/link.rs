@@ -7,7 +7,7 @@
 //! rope and strut    T = λ of the longest − λ of the shortest; at most one of the two is not 0
 //! ```
 //!
-//! T [N] is the tension as applied: λ is scaled by s where the row is rigid.
+//! T \[N\] is the tension as applied: λ is scaled by s where the row is rigid.
 
 use super::{Constraint, Distance, Limits};
 use crate::point::Motion;
@@ -24,9 +24,9 @@ pub struct Link<'a> {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// The least distance of the ends [m]; `None` for a rope.
+    /// The least distance of the ends \[m\]; `None` for a rope.
     pub shortest: Option<f64>,
-    /// The largest distance of the ends [m]; `None` for a loose strut. For a rod both distances are its length.
+    /// The largest distance of the ends \[m\]; `None` for a loose strut. For a rod both distances are its length.
     pub longest: Option<f64>,
     /// The rows of the constraint in C, λ and J. With two limits, the row of the longest comes first.
     pub rows: Range<usize>,
@@ -66,7 +66,7 @@ impl<'a> LinkKind<'a> {
         }
     }
 
-    /// T [N] from λ of the rows of the constraint.
+    /// T \[N\] from λ of the rows of the constraint.
     pub(crate) fn tension<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> f64 {
         match self {
             // A soft rod is a force, so λ is not scaled by s.

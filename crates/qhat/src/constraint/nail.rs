@@ -1,12 +1,12 @@
 //! Nail: one particle stays at the point p.
 //!
-//! vector form (default), d rows, [C] = m, λ in N is the force of the nail on the particle:
+//! vector form (default), d rows, \[C\] = m, λ in N is the force of the nail on the particle:
 //!
 //! ```text
 //! C = x − p,   Ċ = v,   J = I,   γ = 0
 //! ```
 //!
-//! scalar form (as in the source), one row, [C] = m², λ in N/m:
+//! scalar form (as in the source), one row, \[C\] = m², λ in N/m:
 //!
 //! ```text
 //! C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   ∂²C/∂x² = 2 I
@@ -26,10 +26,10 @@ use crate::stiffness::Stiffness;
 /// The function of x − p that is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NailForm {
-    /// C = x − p [m], d rows.
+    /// C = x − p \[m\], d rows.
     #[default]
     Vector,
-    /// C = |x − p|² [m²], one row, the form of the source.
+    /// C = |x − p|² \[m²\], one row, the form of the source.
     Scalar,
 }
 
@@ -38,20 +38,20 @@ pub enum NailForm {
 pub struct Nail {
     /// The particle that is held.
     pub particle: ParticleId,
-    /// p [m]; the third component is ignored in two dimensions.
+    /// p \[m\]; the third component is ignored in two dimensions.
     pub at: [f64; 3],
     /// The function that is held at zero.
     pub form: NailForm,
 }
 
 impl Nail {
-    /// A nail at p [m] in the vector form.
+    /// A nail at p \[m\] in the vector form.
     pub fn new(particle: ParticleId, at: impl Into<Vector>) -> Self {
         Nail { particle, at: at.into().0, form: NailForm::Vector }
     }
 
-    /// A nail that moves: a [`Relation`] of the particle to the point p(t) [m], each component a number or a function of
-    /// t; the third is ignored in two dimensions.
+    /// A nail that moves: a [`Relation`] of the particle to the point p(t) \[m\], each component a number or a function
+    /// of t; the third is ignored in two dimensions.
     ///
     /// ```
     /// use qhat::{Dimension, Driven, Nail, Particle, System};

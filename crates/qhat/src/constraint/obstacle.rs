@@ -37,14 +37,14 @@ pub enum Surface {
     HalfSpace {
         /// A direction of any length.
         normal: [f64; 3],
-        /// The offset of the plane along the unit normal [m].
+        /// The offset of the plane along the unit normal \[m\].
         offset: f64,
     },
     /// A circle or sphere.
     Ball {
-        /// [m].
+        /// \[m\].
         center: [f64; 3],
-        /// [m], positive.
+        /// \[m\], positive.
         radius: f64,
         /// Whether the particle stays inside.
         inside: bool,
@@ -52,30 +52,30 @@ pub enum Surface {
     /// A box along the axes; the particle stays outside. The radius of its round edges is a thousandth of the
     /// smallest half.
     Box {
-        /// [m].
+        /// \[m\].
         center: [f64; 3],
-        /// Half its size along each axis [m], positive.
+        /// Half its size along each axis \[m\], positive.
         half: [f64; 3],
     },
 }
 
 impl Surface {
-    /// A half-space: the particle stays where normal·x ≥ offset [m], for the unit vector along the normal.
+    /// A half-space: the particle stays where normal·x ≥ offset \[m\], for the unit vector along the normal.
     pub fn half_space(normal: impl Into<Vector>, offset: f64) -> Self {
         Surface::HalfSpace { normal: normal.into().0, offset }
     }
 
-    /// A ball that the particle stays out of: its centre [m] and radius [m].
+    /// A ball that the particle stays out of: its centre \[m\] and radius \[m\].
     pub fn ball(center: impl Into<Vector>, radius: f64) -> Self {
         Surface::Ball { center: center.into().0, radius, inside: false }
     }
 
-    /// A ball that the particle stays in: its centre [m] and radius [m].
+    /// A ball that the particle stays in: its centre \[m\] and radius \[m\].
     pub fn inside_of_ball(center: impl Into<Vector>, radius: f64) -> Self {
         Surface::Ball { center: center.into().0, radius, inside: true }
     }
 
-    /// A box along the axes that the particle stays out of: its centre [m] and half its size along each axis [m].
+    /// A box along the axes that the particle stays out of: its centre \[m\] and half its size along each axis \[m\].
     /// In two dimensions the third component of the half size is ignored, but positive.
     pub fn block(center: impl Into<Vector>, half: [f64; 3]) -> Self {
         Surface::Box { center: center.into().0, half }
@@ -108,12 +108,12 @@ impl Obstacle {
         Obstacle { particle, surface, restitution: 0.0, friction: 0.0 }
     }
 
-    /// The same with the part of the closing speed that an impact gives back [1].
+    /// The same with the part of the closing speed that an impact gives back \[1\].
     pub fn with_restitution(self, restitution: f64) -> Self {
         Obstacle { restitution, ..self }
     }
 
-    /// The same with μ of Coulomb's law [1].
+    /// The same with μ of Coulomb's law \[1\].
     pub fn with_friction(self, friction: f64) -> Self {
         Obstacle { friction, ..self }
     }

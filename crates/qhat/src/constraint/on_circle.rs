@@ -6,7 +6,7 @@
 //! C_1 = |d| − r,   J = nᵀ,    C_t = −n·ṗ − ṙ           (on_sphere.rs)
 //! ```
 //!
-//! Two rows [m], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards [N].
+//! Two rows \[m\], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards \[N\].
 //! Three dimensions only; in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
 //! where both gradients have the same direction.
 
@@ -28,12 +28,12 @@ pub struct OnCircle {
     pub center: Anchor,
     /// The axis, at right angles to the circle, of any length.
     pub axis: [f64; 3],
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnCircle {
-    /// A particle on a circle of a radius [m] about a centre, at right angles to an axis.
+    /// A particle on a circle of a radius \[m\] about a centre, at right angles to an axis.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }

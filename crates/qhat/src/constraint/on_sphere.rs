@@ -6,7 +6,7 @@
 //! J = nᵀ on the particle, −nᵀ on the other particle,   C_t = −n·ṗ − ṙ
 //! ```
 //!
-//! λ is the force of the sphere on the particle [N], outwards; the tension of a driven rod is −λ. Distance is the same
+//! λ is the force of the sphere on the particle \[N\], outwards; the tension of a driven rod is −λ. Distance is the same
 //! constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large systems.
 //!
 //! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
@@ -26,12 +26,12 @@ pub struct OnSphere {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnSphere {
-    /// A particle at a distance [m] from a centre.
+    /// A particle at a distance \[m\] from a centre.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
         OnSphere { particle, center: center.into(), radius: radius.into() }
     }

@@ -18,7 +18,7 @@ use crate::space::ParticleId;
 pub struct Relation {
     /// The particles with their weights, each particle once.
     pub terms: Vec<(ParticleId, f64)>,
-    /// p [m]; the third component is ignored in two dimensions.
+    /// p \[m\]; the third component is ignored in two dimensions.
     pub point: [Driven; 3],
 }
 
@@ -33,7 +33,7 @@ impl Relation {
         Relation::homogeneous([(m, 1.0), (a, -0.5), (b, -0.5)])
     }
 
-    /// The centre of mass of particles with masses m_i [kg] at p(t): w_i = m_i/Σ m.
+    /// The centre of mass of particles with masses m_i \[kg\] at p(t): w_i = m_i/Σ m.
     pub fn center_of_mass(masses: impl Into<Vec<(ParticleId, f64)>>, point: [Driven; 3]) -> Self {
         let mut terms = masses.into();
         let sum: f64 = terms.iter().map(|(_, mass)| mass).sum();

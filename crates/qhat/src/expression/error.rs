@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// The part of the text [bytes], on borders of characters; empty at the end of the text.
+    /// The part of the text \[bytes\], on borders of characters; empty at the end of the text.
     pub span: Range<usize>,
     /// What is wrong.
     pub message: String,

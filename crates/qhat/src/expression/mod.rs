@@ -46,7 +46,7 @@ use std::fmt;
 use std::sync::Arc;
 use tape::{Input, Tape};
 
-/// The largest text [bytes].
+/// The largest text \[bytes\].
 pub const MAX_BYTES: usize = 4096;
 /// The largest number of numbers, names and operations, as written.
 pub const MAX_NODES: usize = 512;
@@ -125,7 +125,7 @@ impl Expression {
         self.tape().instructions.len()
     }
 
-    /// The value at q [m], q̇ [m/s] (flat, d numbers a particle of the system) and t [s]. q̇ may be empty if no
+    /// The value at q \[m\], q̇ [m/s] (flat, d numbers a particle of the system) and t \[s\]. q̇ may be empty if no
     /// velocity is used.
     pub fn value(&self, q: &[f64], qd: &[f64], t: f64) -> f64 {
         self.run(|tape, room| tape.values(At { q, qd, t }, room))

@@ -24,13 +24,13 @@ pub struct Actuator {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// f₀ [N].
+    /// f₀ \[N\].
     pub push: f64,
-    /// f₁ [N].
+    /// f₁ \[N\].
     pub amplitude: f64,
     /// ω [rad/s].
     pub angular_frequency: f64,
-    /// φ [rad].
+    /// φ \[rad\].
     pub phase: f64,
 }
 

@@ -32,7 +32,7 @@ pub struct CubicSpring {
     pub cubic: f64,
     /// kd [N·s/m], not negative.
     pub damping: f64,
-    /// r [m], not negative.
+    /// r \[m\], not negative.
     pub rest: f64,
 }
 

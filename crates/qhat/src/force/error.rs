@@ -54,7 +54,7 @@ pub enum ForceError {
     /// The rest angle of a torsion spring is more than half a turn.
     #[error("the rest angle of a torsion spring must be within π of zero, but is {angle}")]
     RestAngle {
-        /// The angle [rad].
+        /// The angle \[rad\].
         angle: f64,
     },
     /// Two corners of a facet are the same particle.
@@ -63,7 +63,7 @@ pub enum ForceError {
     /// The gas fills no area or volume at the start.
     #[error("a gas must fill more than nothing at the start, but fills {content}")]
     GasContent {
-        /// The area [m²] or volume [m³].
+        /// The area \[m²\] or volume \[m³\].
         content: f64,
     },
     /// Too many particles hold a gas.

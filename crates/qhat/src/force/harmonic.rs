@@ -16,11 +16,11 @@ use crate::stiffness::Stiffness;
 pub struct HarmonicForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// f [N]; the third component is ignored in two dimensions.
+    /// f \[N\]; the third component is ignored in two dimensions.
     pub amplitude: [f64; 3],
     /// ω [rad/s].
     pub angular_frequency: f64,
-    /// φ [rad].
+    /// φ \[rad\].
     pub phase: f64,
 }
 

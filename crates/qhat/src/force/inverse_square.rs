@@ -29,7 +29,7 @@ pub struct InverseSquare {
     pub b: ParticleId,
     /// s [N·m²]: −G m_a m_b or k q_a q_b. A negative s attracts.
     pub strength: f64,
-    /// ε, the softening length [m], not negative.
+    /// ε, the softening length \[m\], not negative.
     pub softening: f64,
 }
 
@@ -79,12 +79,12 @@ impl Law {
 }
 
 impl InverseSquare {
-    /// Gravity between masses [kg]; the gravitational constant in m³/(kg·s²), the softening length in m.
+    /// Gravity between masses \[kg\]; the gravitational constant in m³/(kg·s²), the softening length in m.
     pub fn gravity(ids: [ParticleId; 2], masses: [f64; 2], constant: f64, softening: f64) -> Self {
         InverseSquare { a: ids[0], b: ids[1], strength: -constant * masses[0] * masses[1], softening }
     }
 
-    /// Electrostatics between charges [C]; Coulomb's constant in N·m²/C², the softening length in m.
+    /// Electrostatics between charges \[C\]; Coulomb's constant in N·m²/C², the softening length in m.
     pub fn charges(ids: [ParticleId; 2], charges: [f64; 2], constant: f64, softening: f64) -> Self {
         InverseSquare { a: ids[0], b: ids[1], strength: constant * charges[0] * charges[1], softening }
     }

@@ -21,7 +21,7 @@ use crate::stiffness::Stiffness;
 pub struct MouseSpring {
     /// The particle that is pulled.
     pub particle: ParticleId,
-    /// p [m]; the third component is ignored in two dimensions.
+    /// p \[m\]; the third component is ignored in two dimensions.
     pub target: [f64; 3],
     /// ks [N/m], not negative.
     pub stiffness: f64,

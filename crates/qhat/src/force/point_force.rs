@@ -16,12 +16,12 @@ use crate::stiffness::Stiffness;
 pub struct PointForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// f [N]; the third component is ignored in two dimensions.
+    /// f \[N\]; the third component is ignored in two dimensions.
     pub force: [f64; 3],
 }
 
 impl PointForce {
-    /// A constant force [N] on a particle.
+    /// A constant force \[N\] on a particle.
     pub fn new(particle: ParticleId, force: impl Into<Vector>) -> Self {
         PointForce { particle, force: force.into().0 }
     }

@@ -30,7 +30,7 @@ pub struct Spring {
     pub stiffness: f64,
     /// kd [N·s/m], not negative.
     pub damping: f64,
-    /// r, the rest length [m], not negative.
+    /// r, the rest length \[m\], not negative.
     pub rest: f64,
 }
 

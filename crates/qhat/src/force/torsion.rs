@@ -49,7 +49,7 @@ pub struct TorsionSpring {
     pub stiffness: f64,
     /// kd [N·m·s/rad], not negative.
     pub damping: f64,
-    /// θ₀ [rad]: −π to π in the plane, counter-clockwise from the first arm to the second; 0 to π in space. π is
+    /// θ₀ \[rad\]: −π to π in the plane, counter-clockwise from the first arm to the second; 0 to π in space. π is
     /// straight.
     pub angle: f64,
 }

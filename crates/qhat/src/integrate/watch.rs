@@ -1,8 +1,8 @@
 //! TensionWatch: the largest tension at the ends of the substeps of a frame.
 //!
-//! No method has λ at the end of every substep: open chains solve for accelerations alone, and Runge–Kutta methods know λ
-//! at their stages. So the watch solves the equation once more a substep, in arrays of its own: whether a simulation is
-//! watched does not change a bit of its motion.
+//! No method has λ at the end of every substep: open chains solve for accelerations alone, and Runge–Kutta methods know
+//! λ at their stages. So the watch solves the equation once more a substep, in arrays of its own: whether a simulation
+//! is watched does not change a bit of its motion.
 
 use super::Workspace;
 use crate::report::MaxTension;

@@ -70,7 +70,7 @@ pub struct Component {
     pub factor_flops: u64,
     /// Floating point operations of one solve.
     pub solve_flops: u64,
-    /// Memory of its factor, approximately [bytes].
+    /// Memory of its factor, approximately \[bytes\].
     pub memory: u64,
 }
 

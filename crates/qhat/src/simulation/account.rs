@@ -9,8 +9,8 @@ use crate::energy::{self, Energy};
 use crate::state::State;
 use crate::system::System;
 
-/// The share of the energy scale below which a kinetic energy does not count as motion [1]. Energy errors are relative to
-/// the largest kinetic energy, and for a structure at rest that must not be roundoff.
+/// The share of the energy scale below which a kinetic energy does not count as motion [1]. Energy errors are relative
+/// to the largest kinetic energy, and for a structure at rest that must not be roundoff.
 const FLOOR: f64 = 1e-6;
 
 /// How well a run has kept its energy since its start.

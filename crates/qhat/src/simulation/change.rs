@@ -18,8 +18,8 @@ impl Simulation {
         if self.settings.integrator.projects() { Feedback::NONE } else { self.system.feedback }
     }
 
-    /// Changes the settings. Under an integrator that projects, where the former one did not, the state is made consistent;
-    /// the energy that this takes is booked as stabilization.
+    /// Changes the settings. Under an integrator that projects, where the former one did not, the state is made
+    /// consistent; the energy that this takes is booked as stabilization.
     ///
     /// # Errors
     /// Settings out of range; constraints that no positions near by satisfy. Nothing is changed then.
@@ -65,8 +65,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Changes a force of the builder to another, of the same kind or not. The jump of the potential energy is booked as
-    /// external work.
+    /// Changes a force of the builder to another, of the same kind or not. The jump of the potential energy is booked
+    /// as external work.
     ///
     /// # Errors
     /// An id that this system has not; a force that the builder would refuse. Nothing is changed then.
@@ -85,8 +85,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Changes uniform gravity [m/s²]: the first that there is, or a new one. The jump of the potential energy is booked as
-    /// external work.
+    /// Changes uniform gravity [m/s²]: the first that there is, or a new one. The jump of the potential energy is
+    /// booked as external work.
     ///
     /// # Errors
     /// A number that is not finite.

@@ -25,7 +25,7 @@ impl Simulation {
         self.hold(MouseSpring { particle, target: target.into().0, stiffness, damping })
     }
 
-    /// Moves the point that the mouse spring pulls to [m].
+    /// Moves the point that the mouse spring pulls to \[m\].
     ///
     /// # Errors
     /// No particle that is grabbed; a target that is not finite.
@@ -69,13 +69,14 @@ impl Simulation {
         added.enumerate().find(|(_, force)| matches!(force, Force::MouseSpring(_))).map(|(place, _)| built + place)
     }
 
-    /// Stiffness [N/m] and damping [N·s/m] of a mouse spring on a particle: the mass that hangs together with it follows
-    /// the hand in about half a second.
+    /// Stiffness [N/m] and damping [N·s/m] of a mouse spring on a particle: the mass that hangs together with it
+    /// follows the hand in about half a second.
     fn grip(&self, particle: ParticleId) -> (f64, f64) {
         let mass = self.system.connected_mass(particle);
         let (mut stiffness, mut damping) = (mass * FREQUENCY * FREQUENCY, 2.0 * DAMPING_RATIO * mass * FREQUENCY);
         if !self.settings.integrator.is_adaptive() && !self.settings.integrator.is_implicit() {
-            // A light particle on a heavy body feels the whole spring; steps of a fixed h must remain stable for it alone.
+            // A light particle on a heavy body feels the whole spring; steps of a fixed h must remain stable for it
+            // alone.
             let h = self.settings.h;
             let w = self.system.inverse_mass.get(particle.0).copied().unwrap_or(0.0);
             stiffness = stiffness.min(0.25 / (w * h * h));

@@ -1,5 +1,5 @@
-//! Looks at the present state: positions, tensions, reactions, and every symbol of the equation. Looking changes no later
-//! result.
+//! Looks at the present state: positions, tensions, reactions, and every symbol of the equation. Looking changes no
+//! later result.
 
 use super::Simulation;
 use crate::constraint::Link;
@@ -15,7 +15,7 @@ impl Simulation {
         self.workspace.terms(&self.system, &self.state, &feedback)
     }
 
-    /// The position of a particle [m]; z is 0 in two dimensions.
+    /// The position of a particle \[m\]; z is 0 in two dimensions.
     ///
     /// # Panics
     /// If the id is that of another system and this one has no particle with its number.
@@ -36,7 +36,7 @@ impl Simulation {
         std::array::from_fn(|k| own.get(k).copied().unwrap_or(0.0))
     }
 
-    /// The particle nearest to a point [m], fixed or not, if it is within a distance [m]: what a cursor points at.
+    /// The particle nearest to a point \[m\], fixed or not, if it is within a distance \[m\]: what a cursor points at.
     pub fn nearest(&self, point: impl Into<Vector>, within: f64) -> Option<ParticleId> {
         let point = point.into().0;
         in_dimension!(self.system.dimension, D => {
@@ -49,14 +49,14 @@ impl Simulation {
         })
     }
 
-    /// The signed tension of every link ([`System::links`](crate::System::links): rods, ropes, struts), as applied [N];
-    /// positive where the link pulls its ends together.
+    /// The signed tension of every link ([`System::links`](crate::System::links): rods, ropes, struts), as applied
+    /// \[N\]; positive where the link pulls its ends together.
     pub fn tension(&mut self) -> Vec<f64> {
         let feedback = self.feedback_in_use();
         self.workspace.tension(&self.system, &self.state, &feedback)
     }
 
-    /// Every link with its signed tension [N].
+    /// Every link with its signed tension \[N\].
     ///
     /// ```
     /// use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
@@ -79,14 +79,16 @@ impl Simulation {
 
     /// Records the largest tension or thrust of every frame from now on, or stops to. [`StepReport::max_tension`] then
     /// has it, over the ends of all substeps of the frame that were kept; jerks of ropes and impacts are impulses, not
-    /// tensions, and do not count. It costs one more solution of the equation a substep, and changes no bit of the motion.
+    /// tensions, and do not count. It costs one more solution of the equation a substep, and changes no bit of the
+    /// motion.
     ///
     /// [`StepReport::max_tension`]: crate::StepReport::max_tension
     pub fn record_tension(&mut self, is_recorded: bool) {
         self.workspace.watch_tension(&self.system, is_recorded);
     }
 
-    /// The signed tension of one constraint [N], positive where it pulls its ends together; `None` if its kind is no link.
+    /// The signed tension of one constraint \[N\], positive where it pulls its ends together; `None` if its kind is no
+    /// link.
     ///
     /// # Panics
     /// If the id is that of another system and this one has no constraint with its number.
@@ -102,16 +104,16 @@ impl Simulation {
     ///
     /// | kind | rows | λ is |
     /// |---|---|---|
-    /// | [`Distance`](crate::Distance), [`OnSphere`](crate::OnSphere), driven or not | 1 | minus the tension [N] |
-    /// | [`Limits`](crate::Limits) | longest, shortest | the tension [N], the thrust [N]; never negative |
-    /// | [`Nail`](crate::Nail), [`Relation`](crate::Relation) | x, y, z | the force on the particle (of weight 1) [N] |
-    /// | [`Obstacle`](crate::Obstacle) | normal, tangents | the push along the outward normal, the friction [N] |
-    /// | [`OnLine`](crate::OnLine), [`OnPlane`](crate::OnPlane), [`OnCurve`](crate::OnCurve) | normals | the push across [N] |
-    /// | [`OnCircle`](crate::OnCircle) | radius, axis | the push outwards, the push along the axis [N] |
+    /// | [`Distance`](crate::Distance), [`OnSphere`](crate::OnSphere), driven or not | 1 | minus the tension \[N\] |
+    /// | [`Limits`](crate::Limits) | longest, shortest | the tension \[N\], the thrust \[N\]; never negative |
+    /// | [`Nail`](crate::Nail), [`Relation`](crate::Relation) | x, y, z | the force on the particle (of weight 1) \[N\] |
+    /// | [`Obstacle`](crate::Obstacle) | normal, tangents | the push along the outward normal, the friction \[N\] |
+    /// | [`OnLine`](crate::OnLine), [`OnPlane`](crate::OnPlane), [`OnCurve`](crate::OnCurve) | normals | the push across \[N\] |
+    /// | [`OnCircle`](crate::OnCircle) | radius, axis | the push outwards, the push along the axis \[N\] |
     /// | [`Angle`](crate::Angle), [`Gears`](crate::Gears) | 1 | the torque that turns the angle up [N·m] |
     /// | [`Area`](crate::Area), [`Volume`](crate::Volume) | 1 | the pressure inside [N/m], [N/m²] |
-    /// | [`Direction`](crate::Direction) | normals | the push on the second particle across the line [N] |
-    /// | [`Lengths`](crate::Lengths) | 1 | minus the tension of a segment of weight 1 [N] |
+    /// | [`Direction`](crate::Direction) | normals | the push on the second particle across the line \[N\] |
+    /// | [`Lengths`](crate::Lengths) | 1 | minus the tension of a segment of weight 1 \[N\] |
     /// | [`ExpressionConstraint`](crate::ExpressionConstraint) | 1 | J/C, C in its own unit |
     ///
     /// The squared forms of the classic formulation have C in m² and λ in N/m.
@@ -127,13 +129,14 @@ impl Simulation {
         in_dimension!(self.system.dimension, D => {
             let equation = self.workspace.solve::<D>(&self.system, &self.state, &feedback);
             // A row that gives way is a force, and no factor acts on it.
-            rows.map(|row| if self.system.is_rigid(row) { s * equation.lambda[row] } else { equation.lambda[row] }).collect()
+            let factor = |row: usize| if self.system.is_rigid(row) { s } else { 1.0 };
+            rows.map(|row| factor(row) * equation.lambda[row]).collect()
         })
     }
 
-    /// The force that a fixed particle passes on to the ground [N]; z is 0 in two dimensions. It is the sum of all
-    /// constraint forces and applied forces on the particle, without gravity: the mass of a fixed particle plays no part in
-    /// the motion. The ground pushes back with the opposite force. 0 for a particle that is not fixed.
+    /// The force that a fixed particle passes on to the ground \[N\]; z is 0 in two dimensions. It is the sum of all
+    /// constraint forces and applied forces on the particle, without gravity: the mass of a fixed particle plays no
+    /// part in the motion. The ground pushes back with the opposite force. 0 for a particle that is not fixed.
     ///
     /// # Panics
     /// As [`Simulation::position`].

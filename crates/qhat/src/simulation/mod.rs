@@ -16,7 +16,8 @@ use account::EnergyAccount;
 
 /// A system in motion: [`step`](Self::step) or [`advance`](Self::advance) it, look at its
 /// [tensions](Self::links), [reactions](Self::reaction) and [energy](Self::energy), change
-/// [forces](Self::set_force) and [settings](Self::set_settings) between steps, and [take hold](Self::grab) of a particle.
+/// [forces](Self::set_force) and [settings](Self::set_settings) between steps, and [take hold](Self::grab) of a
+/// particle.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     system: System,
@@ -33,8 +34,8 @@ impl Simulation {
     /// [`Simulation::projection`] says how far that is.
     ///
     /// # Errors
-    /// Settings out of range; constraints that no positions near by satisfy; a start beyond what a contact or limit allows;
-    /// an integrator that finds no events where there are some.
+    /// Settings out of range; constraints that no positions near by satisfy; a start beyond what a contact or limit
+    /// allows; an integrator that finds no events where there are some.
     pub fn new(system: System, state: State, settings: Settings) -> Result<Self, StepError> {
         settings.check()?;
         let mut simulation = Simulation {
@@ -71,7 +72,7 @@ impl Simulation {
         report
     }
 
-    /// Advances by a duration [s]: one frame with an adaptive integrator, steps of h with another.
+    /// Advances by a duration \[s\]: one frame with an adaptive integrator, steps of h with another.
     ///
     /// # Errors
     /// [`SettingsError::FrameNotMultiple`] if steps of h do not fill the duration; else as [`Simulation::step`].
@@ -124,14 +125,14 @@ impl Simulation {
         crate::energy::energy(&self.system, &self.state)
     }
 
-    /// The energy that is missing at the present state, relative to the largest kinetic energy so far [1]; negative where
-    /// energy was lost. The divisor is at least a millionth of the work that the applied forces could do over the length of
-    /// the system, so that a structure at rest divides by something.
+    /// The energy that is missing at the present state, relative to the largest kinetic energy so far \[1\]; negative
+    /// where energy was lost. The divisor is at least a millionth of the work that the applied forces could do over the
+    /// length of the system, so that a structure at rest divides by something.
     pub fn energy_error(&self) -> f64 {
         self.account.error(&self.energy())
     }
 
-    /// The largest size of the missing energy after any step so far, relative to the same [1].
+    /// The largest size of the missing energy after any step so far, relative to the same \[1\].
     pub fn energy_error_max(&self) -> f64 {
         self.account.largest_error()
     }

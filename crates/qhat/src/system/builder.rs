@@ -42,7 +42,7 @@ impl SystemBuilder {
         ParticleId(self.particles.len() - 1)
     }
 
-    /// m [kg] of a particle that was added.
+    /// m \[kg\] of a particle that was added.
     ///
     /// # Panics
     /// Where there is none with this id.
@@ -131,8 +131,9 @@ impl SystemBuilder {
     /// ```
     ///
     /// # Errors
-    /// A name used twice, a number that is not finite or not allowed, a particle of the wrong dimension or that does not
-    /// exist, a fixed particle that moves, so many constraints so closely connected that their factor would not fit.
+    /// A name used twice, a number that is not finite or not allowed, a particle of the wrong dimension or that does
+    /// not exist, a fixed particle that moves, so many constraints so closely connected that their factor would not
+    /// fit.
     pub fn build(&self) -> Result<(System, State), BuildError> {
         self.check()?;
         let q: Vec<f64> = self.particles.iter().flat_map(|particle| particle.position.iter().copied()).collect();

@@ -43,9 +43,9 @@ pub enum BuildError {
         memory.div_ceil(1 << 30), limit >> 30
     )]
     TooLarge {
-        /// What it would take [bytes].
+        /// What it would take \[bytes\].
         memory: u64,
-        /// What is allowed [bytes].
+        /// What is allowed \[bytes\].
         limit: u64,
     },
     /// A feedback coefficient is out of range.
@@ -76,7 +76,7 @@ pub enum ParticleError {
     /// The mass, or its inverse, is not positive and finite.
     #[error("the mass must be positive and finite, but is {mass:?} kg")]
     Mass {
-        /// m [kg].
+        /// m \[kg\].
         mass: f64,
     },
     /// A fixed particle has a velocity.
