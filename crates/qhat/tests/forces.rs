@@ -21,7 +21,7 @@ fn build(random: &mut Random, d: usize, force: Force) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// V at other positions, through the public door.
+/// V at other positions, through the public interface.
 fn potential(system: &System, state: &State, q: Vec<f64>) -> f64 {
     let state = state.at(q, state.velocities().to_vec());
     let settings = systems::settings(Integrator::Euler, 0.01);
@@ -35,7 +35,8 @@ fn slope(system: &System, state: &State, v: &[f64]) -> f64 {
     (8.0 * (at(DELTA) - at(-DELTA)) - (at(2.0 * DELTA) - at(-2.0 * DELTA))) / (12.0 * DELTA)
 }
 
-/// Power of what no potential accounts for, as the energy account books it: over a step so short that nothing changes.
+/// Power of the forces without a potential, from the account of energy over a step so short that the motion hardly
+/// changes.
 fn booked_power(system: &System, state: &State) -> f64 {
     const H: f64 = 1e-10;
     let mut after = state.clone();
@@ -112,7 +113,7 @@ fn springs_damp_their_own_stretching() {
     check(|_| spring(1.7), &|i, x, v, _| spring_force(i, x, v, 1.7), true);
 }
 
-/// A spring that shrinks pushes outward by its damper: the slip of the source would add energy here.
+/// The damper of a spring that shrinks pushes outward; the wrong sign of the source would add energy here.
 #[test]
 fn spring_damping_opposes_the_stretch_rate() {
     let mut builder = System::builder(dimension(2));

@@ -1,5 +1,5 @@
-//! The table of cases: every kind of constraint in the plane and in space, driven and not, each with what its rows are
-//! as expressions. It is longer than other files, and reads best in one piece.
+//! The table of cases: every kind of constraint in the plane and in space, driven and not, each with its rows as
+//! expressions. The file is longer than others because a table is easier to read in one piece.
 
 use super::case::{Case, Clock, P, PLACES, driven, mass, parse, twin};
 use qhat::{
@@ -425,7 +425,7 @@ pub(crate) const CASES: &[Case] = &[
             rods.into_iter().map(|[a, b]| Distance::new(P[a], P[b], length(a, b)).into()).collect()
         },
         &[
-            // Nine of the ten distances, among them one that the rods leave out.
+            // Nine of the ten distances, including the distance for which there is no rod.
             "dist(p0, p1) - S",
             "dist(p0, p2) - S",
             "dist(p1, p2) - S",
@@ -571,7 +571,7 @@ pub(crate) const CASES: &[Case] = &[
     twin("slope in space", 3, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).without_motion().anywhere(),
     twin("outside of a circle", 2, &[], |_| vec![ball(false)], &["dist(p1, [0.3, -0.4]) - 0.5"]).without_motion(),
     twin("inside of a ball", 3, &[], |_| vec![ball(true)], &["0.5 - dist(p1, [0.3, -0.4, 0.1])"]).without_motion(),
-    // Off its corner, whose radius is a thousandth of 0.5 m.
+    // Beyond a corner, whose radius is a thousandth of 0.5 m.
     twin("corner of a box", 2, &[], |_| vec![corner_of_a_box()], &["length(p1 - [0.2995, -0.4005]) - 0.0005"])
         .without_motion(),
     twin(

@@ -1,4 +1,4 @@
-//! Every kind of constraint, in one table of cases and one file for each question that is asked of all of them.
+//! Every kind of constraint: one table of cases, and one file for each question about all kinds.
 
 mod case;
 mod cases;
@@ -14,8 +14,8 @@ use qhat::Constraint;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. It does not
-/// compile where a kind is missing: name a new one here, then add its cases.
+/// The kinds by the numbers of dimensions in which they can be used; the kinds behind `equality` hold C = 0 over a
+/// motion. The code does not compile if a kind is missing: name a new kind here, then add its cases.
 macro_rules! kinds {
     ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
         /// Name, dimensions, and whether it is an equality.

@@ -78,7 +78,7 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
         builder.particle(if i == 0 { particle.fixed() } else { particle.with_velocity(v) });
     }
     for i in 1..particles {
-        // The last one is nailed: hung from the fixed root itself, it would be held twice.
+        // The last particle is nailed; on a rod from the fixed root it would be held twice.
         let j = if i + 1 == particles { 1 + random.below(i - 1) } else { random.below(i) };
         let length = random.within(0.5, 2.0);
         let form = if random.below(2) == 0 { DistanceForm::Length } else { DistanceForm::Squared };
@@ -87,7 +87,7 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
     }
     let held = ParticleId(particles - 1);
     let form = if random.below(2) == 0 { NailForm::Vector } else { NailForm::Scalar };
-    // Away from the particle, so that the scalar form has a gradient.
+    // The nail is away from the particle, so that the scalar form has a gradient.
     let at = std::array::from_fn(|k| points[held.0].get(k).map_or(0.0, |x| x + random.within(0.2, 0.8)));
     builder.constraint("nail", Nail { particle: held, at, form });
     builder.force(Gravity { acceleration: random.triple() });
