@@ -56,7 +56,7 @@ class Recorder:
         self.since = time.process_time()
 
     def frame(self, read: Read) -> bool:
-        """Adds a frame and returns whether to go on. The clock is stopped while `read` reads positions and velocities."""
+        """Adds a frame and returns whether to go on. The clock is stopped while `read` is called."""
         self.cpu += time.process_time() - self.since
         positions, velocities = read()
         if np.isfinite(positions).all() and np.isfinite(velocities).all():
