@@ -10,12 +10,12 @@ export interface Command {
   keys: readonly string[];
   /** the name of its button; a command without a button has none */
   label?(page: Page): string;
-  /** the effect of its keys, as the help says it; '' for a command without keys */
+  /** the effect of its keys, for the help; '' for a command without keys */
   help: string;
   enabled(page: Page): boolean;
   /** `key` is the key that was pressed; for a button the first of the keys */
   run(page: Page, key: string): void;
-  /** the last of its keys was let go */
+  /** runs when the last of its keys is released */
   release?(page: Page): void;
 }
 

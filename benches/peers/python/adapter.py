@@ -2,7 +2,7 @@
 
     ENGINE.py WORKLOAD.json LIMIT OUTPUT key=value …
 
-prints the CPU seconds of the stepping alone and, if the run ended early, why. OUTPUT gets positions [m] and velocities
+prints the CPU seconds of the steps alone and the reason of an early end. OUTPUT gets positions [m] and velocities
 [m/s] of every frame as little-endian f64 (crates/qhat-bench/src/trajectory.rs reads it).
 """
 

@@ -2,8 +2,8 @@
 
     compare.py BUILT PEERS.csv [WORKLOAD …]
 
-BUILT is the folder of the built engines and of qhat-bench. With workloads named, only those are run, and nothing is
-written. A setting that takes more than LIMIT of CPU time is stopped; the dearer ones after it are not tried.
+BUILT is the folder of the built engines and of qhat-bench. If workloads are named, only these are run, and no file is
+written. A setting that takes more than LIMIT of CPU time is stopped, and the more expensive settings are skipped.
 """
 
 import csv

@@ -1,9 +1,9 @@
-"""OpenMM: particles with distance constraints (CCMA), no other force than gravity, on its Reference platform in f64.
+"""OpenMM: particles with distance constraints (CCMA), with gravity only, on its Reference platform in f64.
 
     substeps     steps a frame
     tolerance    of the constraints, relative (its default is 1e-5)
 
-Units are nm, ps and u in OpenMM; here they stand for m, s and kg, which changes nothing, for only gravity acts.
+Units are nm, ps and u in OpenMM; here they stand for m, s and kg. This has no effect, because only gravity acts.
 """
 
 import numpy as np

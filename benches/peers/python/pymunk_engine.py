@@ -2,7 +2,7 @@
 
     substeps     steps a frame
     iterations   of the solver a step (its default is 10)
-    bias         share of a joint's error that is left after a second; by default 0.9^60, the least is 0
+    bias         part of a joint's error that remains after a second; the default is 0.9^60, the least 0
 """
 
 import numpy as np

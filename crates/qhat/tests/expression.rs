@@ -506,7 +506,7 @@ fn the_deepest_text_fits_a_small_stack() {
     assert_eq!(parsed.join().unwrap(), [true; 4]);
 }
 
-/// The marked part is always text, whatever the text is.
+/// The marked part of a message is a valid slice of any text.
 fn assert_harmless(text: &str) {
     for (purpose, d) in [(Purpose::Constraint, 2), (Purpose::Force, 3)] {
         match parse_in(text, purpose, dimension(d)) {

@@ -121,7 +121,7 @@ fn spring_damping_opposes_the_stretch_rate() {
     let b = builder.particle(Particle::at("b", [0.0, 0.0]));
     builder.force(Spring { a, b, stiffness: 10.0, damping: 3.0, rest: 1.0 });
     let (system, state) = builder.build().unwrap();
-    // At rest length only the damper acts: −kd L̇ = −3 · 2 N along x, and nothing of the 5 m/s across.
+    // At rest length only the damper acts: −kd L̇ = −3 · 2 N along x; the 5 m/s across have no effect.
     assert_eq!(evaluate(&system, &state).applied_forces, [-6.0, 0.0, 6.0, 0.0]);
 }
 

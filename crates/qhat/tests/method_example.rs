@@ -275,7 +275,7 @@ fn chain(form: DistanceForm) -> Terms {
 
 fn chains() -> Vec<Line> {
     let (squared, length) = (chain(DistanceForm::Squared), chain(DistanceForm::Length));
-    // d·d − r² is twice the half squared form: J, γ and b are twice, A is four times, λ half of what the page says.
+    // d·d − r² is twice the half squared form: J, γ and b are twice, A is four times, λ half of the value on the page.
     let A: Vec<f64> = squared.constraint_matrix.to_dense().iter().map(|a| a / 4.0).collect();
     let b: Vec<f64> = squared.right_hand_side.iter().map(|b| b / 2.0).collect();
     let (e, p1) = (A[2], A[0]);
@@ -367,7 +367,7 @@ fn contacts() -> Vec<Line> {
     for (symbol, e) in [("q̇⁺ for e = 0", 0.0), ("q̇⁺ for e = ½", 0.5)] {
         let (system, state) = rope(e);
         let thrown = at(&state, [1.0, -1.0], [1.0, -1.0]);
-        // A frame so short that gravity adds nothing to the digits that the page shows.
+        // A frame so short that gravity does not change the digits on the page.
         let short = Settings { h: 1e-9, ..settings };
         let mut simulation = Simulation::new(system, thrown, short).unwrap();
         simulation.step().unwrap();

@@ -27,9 +27,9 @@ const DURATION: f64 = 0.5;
 /// q, q̇, λ and the work booked after `steps` equal steps.
 fn run(integrator: Integrator, steps: usize) -> [Vec<f64>; 4] {
     let (system, mut state) = system();
-    // RATTLE then takes each frame in one substep: an error of almost 1 is allowed, and h is below what stability and
-    // the turning of the rods ask for. The report says so. Newton is driven to roundoff, far below the error that is
-    // measured.
+    // With these settings RATTLE takes each frame in one substep: an error of almost 1 is allowed, and h is below the
+    // bounds from stability and from the rotation of the rods. The report is checked for it. Newton iterates to
+    // roundoff, far below the measured error.
     let settings = Settings {
         integrator,
         h: DURATION / steps as f64,

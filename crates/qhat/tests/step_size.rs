@@ -86,8 +86,8 @@ fn substeps_of_a_frame_are_alike() {
     assert!(worst > 0.25, "the smallest substep was {worst} of the mean");
 }
 
-/// λ of the last substep is the guess for the next: Newton then needs one to two iterations, of which one is always
-/// made.
+/// λ of the last substep is the guess for the next: Newton then needs one or two iterations; the first
+/// is always made.
 #[test]
 fn multipliers_of_the_last_substep_start_the_next() {
     // Counted, with a small margin; with half of λ as the guess each substep needs one more iteration.

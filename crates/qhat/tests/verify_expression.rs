@@ -157,9 +157,9 @@ fn forces_as_expressions_move_as_the_built_in_ones() {
         };
         chain(held(), (0..4).map(of).collect())
     };
-    // A step of bdf2 and implicit ends with its velocity put onto Ċ = 0 in the metric M + h² K of Newton's matrix. A
-    // damped spring leaves a part of its K out that the expressions have: a difference of h² K/M of what that changes,
-    // itself some h².
+    // At the end of a step of bdf2 and implicit, the velocity is projected onto Ċ = 0 in the metric M + h² K of
+    // Newton's matrix. The K of a damped spring lacks a part that the expressions have. The projections then differ by
+    // h² K/M times their change of the velocity, which is itself some h².
     let by_components = TWINS.map(|(integrator, tolerance, allowed)| match integrator {
         Integrator::Bdf2 | Integrator::Implicit => (integrator, tolerance, 1e-5),
         _ => (integrator, tolerance, allowed),
@@ -178,8 +178,8 @@ fn driven() -> SystemBuilder {
     let mut builder = particles();
     builder.constraint("x", row("p0.x")).constraint("y", row("p0.y"));
     builder.constraint("driven", row("dist(p0, p1) - (1 + 0.1*sin(3*t))"));
-    // Consistent with the rate of the length, 0.3 m/s at the start: p1 is pushed by the projection, and Euler's methods
-    // start from rest with Ċ off by as much; what holds is the acceleration.
+    // The length changes at 0.3 m/s at the start. The projection gives p1 this velocity. Euler's methods do not
+    // project: they start from rest with Ċ off by 0.3 m/s, and only the acceleration is consistent.
     builder.force(GRAVITY);
     builder
 }

@@ -206,9 +206,9 @@ fn a_loop_under_pressure_becomes_regular() {
     }
 }
 
-/// A regular polygon of n particles of mass m, let go at the radius R, holds A = k r², k = ½ n sin(2π/n). With γ = 2
-/// the force on each, 2 k r p/n, is as r⁻³: r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀) has
-/// become kinetic energy.
+/// A regular polygon of n particles of mass m, released at the radius R, has the area A = k r², k = ½ n sin(2π/n). With
+/// γ = 2 the force on each, 2 k r p/n, is as r⁻³: r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀)
+/// has become kinetic energy.
 #[test]
 fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
     let (n, m, radius, p) = (7, 0.3, 0.8, 2.0);

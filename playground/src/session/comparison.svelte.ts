@@ -37,7 +37,7 @@ export class Comparison {
     this.ghost = null;
   }
 
-  /** The ghost's controls: those of the run, by the ghost's own method. */
+  /** The controls of the ghost: the controls of the run, with the method of the ghost. */
   private controlsOf(controls: Controls): Controls {
     return { ...controls, integrator: this.integrator, formulation: this.formulation };
   }

@@ -34,7 +34,7 @@ export class Playback {
     private readonly hand: Hand,
   ) {
     session.opened.listen(() => {
-      // a person who asked the system for less motion decides when the scene moves
+      // if the system is set to less motion, a person starts the scene
       this.running = !matchMedia('(prefers-reduced-motion: reduce)').matches;
       this.begin();
     });

@@ -1,4 +1,4 @@
-// The data of one drawn frame. The layers read it and keep nothing.
+// The data of one drawn frame. The layers only read it.
 
 import type { Shape, Structure } from '../engine';
 import type { Held } from '../session/hand';
