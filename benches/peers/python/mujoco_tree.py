@@ -1,5 +1,5 @@
-"""A chain in MuJoCo as an articulated tree of hinges, whose rods cannot change their length. The error is in the angles of
-the hinges, so only the energy shows it. Chains only.
+"""A chain in MuJoCo as an articulated tree of hinges, whose rods cannot change their length. The error is in the angles
+of the hinges, so only the energy shows it. Chains only.
 
     substeps     steps a frame
     integrator   Euler, implicitfast or RK4
