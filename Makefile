@@ -1,15 +1,15 @@
-# The commands of people and CI. `make` alone lists them. scripts/setup installs the tools that are missing.
+# The commands for people and for CI; `make` without a target lists them. scripts/setup installs missing tools.
 
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 MAKEFLAGS += --no-builtin-rules --no-print-directory
-# Two cargo runs over one target folder only wait for each other; cargo itself uses every core. So make starts one
-# thing at a time, and a -j given to it is kept from cargo, which would look for make's job tokens in vain.
+# Two runs of cargo in one target folder wait for each other, and cargo itself uses every core. So make starts one
+# command at a time. A -j for make is not passed on to cargo, which would wait for job tokens of make.
 .NOTPARALLEL:
 unexport MAKEFLAGS MFLAGS
 .PHONY: help play build page test tests check format lint docs fuzz bench clean FORCE
 
-# The command is always compiled with its page, so that no target undoes the work of another.
+# The command is always compiled with its page, so that no target causes another to compile again.
 WORKSPACE := --workspace --features qhat-cli/page
 COMMAND := target/release/qhat
 PAGE := playground/dist/index.html
@@ -27,7 +27,7 @@ build: page ## the qhat command with the page inside, in target/release/qhat
 
 page: $(PAGE) ## the page alone, in playground/dist
 
-# Folders stand in the list beside their files, so that a removed file counts as a change.
+# The list has folders as well as files, so that a removed file counts as a change.
 PAGE_SOURCES = $(shell find playground/src playground/public scenes \
 	-path playground/src/wasm -prune -o -print 2>/dev/null)
 $(PAGE): $(WASM) $(PAGE_SOURCES) \
@@ -35,14 +35,15 @@ $(PAGE): $(WASM) $(PAGE_SOURCES) \
 	@echo "Building the page"
 	@npm --prefix playground run --silent build
 
-# The script runs every time, because cargo knows which sources changed. It leaves the file alone if its content stays.
+# The script runs every time, because cargo knows which sources changed. It does not touch the file if its
+# content is the same.
 $(WASM): FORCE
 	@scripts/setup wasm page
 	@echo "Building the engine for the browser"
 	@scripts/build-wasm
 
-# In this order, one after the other: what a test says counts more than what a lint does.
-test: build tests lint docs ## everything that must hold, here and in CI
+# In this order, one after the other: a failed test is more important than a failed lint.
+test: build tests lint docs ## all builds, tests, lints and documents, here and in CI
 
 tests:
 	@scripts/setup browser
@@ -56,10 +57,10 @@ tests:
 	@echo "Testing the page"
 	@npm --prefix playground run --silent test
 
-check: ## the loop while you write: format, lints and fast tests of the crates that differ from main (CRATES="qhat …")
+check: ## fast checks while you write: format, lints and tests of the crates that differ from main (CRATES="qhat …")
 	@scripts/check $(CRATES)
 
-format: ## write everything in its format; a good pre-commit hook
+format: ## format all files; a good pre-commit hook
 	@cargo fmt --all
 	@if [ -d playground/node_modules ]; then npm --prefix playground run --silent format; fi
 
@@ -78,7 +79,7 @@ fuzz: ## random heaps, expressions and scene files, TIMES=20 times as many as in
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat --test all -- random_ long_heaps
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat-scene --test all -- hostile
 
-bench: ## cost beside length and energy error, here and in other engines, into benches/results (about half an hour)
+bench: ## time, length error and energy error of qhat and other engines, into benches/results (about half an hour)
 	@cargo build --release --quiet --package qhat-bench
 	@echo "Running every shipped scene three times"
 	@target/release/qhat-bench scenes

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# What scripts/setup, scripts/build-wasm and benches/peers/run need to know: where downloaded tools are kept, how to
-# install Debian's packages, which Rust can compile for the browser, and which wasm-bindgen belongs to this checkout.
+# Shared by scripts/setup, scripts/build-wasm and benches/peers/run: the folder of downloaded tools, the installation of
+# Debian packages, the Rust that can compile for the browser, and the wasm-bindgen that belongs to this checkout.
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/qhat
 wasm_target=wasm32-unknown-unknown
@@ -11,7 +11,7 @@ die() {
     exit 1
 }
 
-# Debian's packages; the only step that needs root.
+# Installs Debian packages; the only step that needs root.
 install_debian() {
     command -v apt-get >/dev/null || die "please install: $* (this machine has no apt-get to do it with)"
     local -a root=()
@@ -34,8 +34,8 @@ install_debian() {
 }
 
 # The Rust that compiles for the browser: `own` (the one on PATH has the target), `debian` (the second Rust of
-# Debian 12, which builds the standard library from source), or nothing. Looking into the sysroot rather than asking
-# rustup also finds the target of a Rust that rustup does not manage.
+# Debian 12, which builds the standard library from source), or nothing. The sysroot is searched, because a
+# Rust that rustup does not manage may have the target, too.
 wasm_rust() {
     if [ -d "$(rustc --print sysroot)/lib/rustlib/$wasm_target/lib" ]; then
         echo own
@@ -44,14 +44,14 @@ wasm_rust() {
     fi
 }
 
-# Where the second Rust looks for the source of its standard library, as -Z build-std expects it.
+# The folder in which -Z build-std expects the source of the standard library of the second Rust.
 debian_std_source() {
     local source
     source=$(/usr/bin/rustc --print sysroot)/lib/rustlib/src/rust/library/Cargo.lock
     [ -e "$source" ] && echo "$source"
 }
 
-# Debian's second Rust comes without a linker for wasm: lend it the one inside the rustup toolchain, or LLVM's.
+# Debian's second Rust has no linker for wasm: use the linker of the rustup toolchain, or LLVM's.
 wasm_linker() {
     local host linker
     host=$(rustc -vV | sed -n 's/^host: //p')
@@ -61,7 +61,7 @@ wasm_linker() {
     return 1
 }
 
-# The glue and the crate must be of one version, and Cargo.lock is where that version is written.
+# The command wasm-bindgen and the crate must have the same version; Cargo.lock has the version of the crate.
 wasm_bindgen_version() {
     local version
     [ -e Cargo.lock ] || die "Cargo.lock is missing; it says which wasm-bindgen to use"
@@ -70,7 +70,8 @@ wasm_bindgen_version() {
     echo "$version"
 }
 
-# The wasm-bindgen command of that version: our own copy, or one on PATH if it is exactly the same.
+# The wasm-bindgen command of this version: the copy of scripts/setup, or the command on PATH if its version is the
+# same.
 wasm_bindgen() {
     local version=$1 own=$cache/wasm-bindgen-$1/bin/wasm-bindgen
     if [ -x "$own" ]; then

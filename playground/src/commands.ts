@@ -1,4 +1,4 @@
-// Every command of the page, one record each: the help lists them, the keyboard and the buttons run them.
+// The commands of the page, each in one record. The help lists the commands; the keyboard and the buttons run them.
 
 import type { Page } from './page';
 import { DEFAULT_SCENE } from './session/gallery';
@@ -10,28 +10,28 @@ export interface Command {
   keys: readonly string[];
   /** the name of its button; a command without a button has none */
   label?(page: Page): string;
-  /** the effect of its keys, as the help says it; '' for a command without keys */
+  /** the effect of its keys, for the help; '' for a command without keys */
   help: string;
   enabled(page: Page): boolean;
   /** `key` is the key that was pressed; for a button the first of the keys */
   run(page: Page, key: string): void;
-  /** the last of its keys was let go */
+  /** runs when the last of its keys is released */
   release?(page: Page): void;
 }
 
 const ARROWS = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'] as const;
 
-/** An arrow key moves the view, or the hand that pulls, by so many px. */
+/** Distance by which an arrow key moves the view or the hand that pulls, px. */
 const STRIDE = 24;
-/** An arrow key turns a 3D view by so many radians. */
+/** Angle by which an arrow key turns a 3D view, rad. */
 const TURN = 0.1;
-/** A key zooms by this factor. */
+/** Factor by which a key zooms. */
 const ZOOM = 1.25;
 
 const always = () => true;
 const withScene = ({ session }: Page) => session.phase === 'ready';
 
-/** In the order in which the help lists them. */
+/** The commands, in the order of the help. */
 export const COMMANDS = [
   {
     id: 'play',
@@ -153,7 +153,7 @@ export function commandOf(id: CommandId): Command {
   return COMMANDS.find((command) => command.id === id)!;
 }
 
-/** Names of keys that a keyboard shows otherwise. */
+/** The names in the help of keys whose `KeyboardEvent.key` is not their usual name. */
 const KEY_NAMES: Record<string, string> = { ' ': 'Space', Escape: 'Esc', '-': '−' };
 
 /** The keys of a command as the help shows them, in one text. */

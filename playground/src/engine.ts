@@ -44,7 +44,7 @@ export interface Structure extends EngineStructure {
   links: LinkShape[];
 }
 
-/** A refusal of the engine, in its words; `kind` is the type of the Rust error. */
+/** A refusal of the engine with its message; `kind` is the type of the Rust error. */
 export class EngineError extends Error {
   constructor(
     readonly kind: string,
@@ -92,7 +92,7 @@ export class Simulation {
     return { ...structure, links: structure.shapes.filter(isLink) };
   }
 
-  /** The shapes of the scene at a time in s; only driven ones are asked for again. */
+  /** The shapes of the scene at a time in s; the engine is asked for driven shapes only. */
   shapesAt(shapes: Shape[], time: number): Shape[] {
     if (!shapes.some(({ driven }) => driven)) return shapes;
     const moved = this.inner.driven_shapes(time).values();
@@ -113,12 +113,12 @@ export class Simulation {
     return this.inner.velocities();
   }
 
-  /** N, one per link, + is pull, 0 while slack */
+  /** N, one for each link: positive if it pulls its ends together, 0 while slack */
   tension(): Float64Array {
     return attempt(() => this.inner.tension());
   }
 
-  /** The places of the broken links. */
+  /** The indices of the broken links. */
   broken(): Uint32Array {
     return this.inner.broken();
   }
@@ -131,7 +131,7 @@ export class Simulation {
     return attempt(() => this.inner.terms());
   }
 
-  /** How far the start was moved to satisfy the constraints. */
+  /** The displacement of the start that satisfied the constraints. */
   projection(): Projection {
     return this.inner.projection();
   }

@@ -1,5 +1,5 @@
-// window.qhat: the page's public handle, for the console of a curious person and for the page's own tests. It gives
-// copies, and its methods do what the buttons do.
+// window.qhat: the page's public handle, for people at the console of the browser and for the tests of the page. It
+// gives copies, and its methods have the same effect as the buttons.
 //
 //   qhat.state()            time, positions, velocities, tension, max |C| of the run and of the ghost
 //   qhat.terms()            every symbol of this state: J, A, λ, b, …

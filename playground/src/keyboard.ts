@@ -48,7 +48,7 @@ function commandOfKey(key: string): Command | undefined {
   return (COMMANDS as readonly Command[]).find(({ keys }) => keys.includes(key));
 }
 
-/** Whether the element with the focus answers to a key itself. */
+/** Whether the element with the focus handles the key itself. */
 function isForElement({ target, key }: KeyboardEvent): boolean {
   if (!(target instanceof Element)) return false;
   const dialog = target.closest('dialog');

@@ -27,7 +27,7 @@ export class Theme {
     try {
       localStorage.setItem(KEY, this.chosen);
     } catch {
-      // a browser that keeps nothing still changes its colours now
+      // the colours change also in a browser that cannot store the choice
     }
     this.palette = this.show();
   }

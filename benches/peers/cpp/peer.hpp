@@ -1,5 +1,5 @@
-// What the C++ engines share: the neutral file, the frame loop with its clock, the trajectory. The same protocol as
-// python/adapter.py:  ENGINE WORKLOAD.json LIMIT OUTPUT key=value …  prints CPU seconds and why the run ended early.
+// Shared by the C++ engines: the neutral file, the frame loop with its clock, the trajectory. The same protocol as in
+// python/adapter.py:  ENGINE WORKLOAD.json LIMIT OUTPUT key=value …  prints CPU seconds and the reason of an early end.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,8 @@ struct Workload {
     double inverse_mass(int particle) const { return fixed[particle] ? 0.0 : 1.0 / masses[particle]; }
 
 private:
-    // Every value of the neutral file is a number or a flat list of numbers, so this much of JSON is enough.
+    // Every value of the neutral file is a number or a flat list of numbers, so a reader for this part of JSON is
+    // enough.
     static Numbers read(const std::string& text, const std::string& key) {
         const std::string quoted = "\"" + key + "\":";
         const auto found = text.find(quoted);
@@ -67,11 +68,11 @@ struct State {
     Numbers q, qd;
 };
 
-// Advances by one frame; throws std::runtime_error where it cannot.
+// Advances by one frame; throws std::runtime_error if it cannot.
 using Frame = std::function<void(State&)>;
 using Setting = std::map<std::string, std::string>;
 
-// Not std::clock, whose microseconds are as long as a frame of a small workload. [s]
+// CPU time [s]. std::clock counts microseconds, which is too coarse: a frame of a small workload takes as long.
 inline double cpu_now() {
     timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -79,7 +80,7 @@ inline double cpu_now() {
 }
 
 inline int peer_main(int count, char** words, const std::function<Frame(const Workload&, const Setting&)>& begin) {
-    constexpr int runs = 3;  // of a run that takes under a second the quickest of this many counts
+    constexpr int runs = 3;  // number of runs if a run takes under a second; the fastest counts
     const Workload workload(words[1]);
     const double limit = std::stod(words[2]);
     Setting setting;
@@ -110,7 +111,7 @@ inline int peer_main(int count, char** words, const std::function<Frame(const Wo
             if (!ended.empty()) break;
             written.insert(written.end(), state.q.begin(), state.q.end());
             written.insert(written.end(), state.qd.begin(), state.qd.end());
-            // A tenth of the limit is enough to see that a run will take one and a half of it.
+            // After a tenth of the limit it is clear whether a run will take one and a half times the limit.
             const double estimate = cpu / done * workload.frames;
             if (done < workload.frames && (cpu > limit || (cpu > limit / 10 && estimate > 1.5 * limit)))
                 ended = "too slow: about " + std::to_string(std::lround(estimate)) + " s of CPU time";

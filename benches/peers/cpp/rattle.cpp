@@ -3,7 +3,7 @@
 //   q' = q + h (q̇ + h/2 W (Q + J(q)ᵀ λ)),  |d'| = r         Newton on the rods' lengths with A = J(q) W J(q)ᵀ
 //   q̇' = (q' − q)/h + h/2 W (Q + J(q')ᵀ μ),  J(q') q̇' = 0   one solve with A at q', which serves the next step
 //
-// It fails, and says so, where A has no LDLᵀ or Newton does not converge.
+// It ends with an error if A has no LDLᵀ or Newton does not converge.
 //
 //   substeps     steps a frame
 
@@ -16,8 +16,8 @@
 
 namespace {
 
-constexpr double tolerance = 1e-10;  // of a rod's length, as qhat's
-constexpr int iterations = 50;       // a simplified Newton method contracts; one that has not by then will not
+constexpr double tolerance = 1e-10;  // relative to a rod's length, as in qhat
+constexpr int iterations = 50;       // a simplified Newton method that has not converged by then diverges
 
 template <int D>
 class Rattle {
@@ -36,7 +36,7 @@ public:
         for (int step = 0; step < substeps_; ++step) {
             fall(qd, h_ / 2);
             next_ = q + h_ * qd;
-            // The gradients stay those of q, so that λ acts along the rods as they were.
+            // The gradients are those at q, so λ acts along the rods at the start of the step.
             for (int iteration = 0;; ++iteration) {
                 const double worst = stretch(next_);
                 if (worst <= tolerance && iteration > 0) break;
@@ -57,13 +57,13 @@ private:
     using Block = Eigen::Matrix<double, D, 1>;
     using Vector = Eigen::VectorXd;
 
-    // What one particle adds to one entry of A.
+    // The contribution of one particle to one entry of A.
     struct Share {
         int one, other, value;
         double weight;
     };
 
-    // The lower triangle of A: rods that share a moving particle meet in it.
+    // The lower triangle of A has an entry for every two rods that share a moving particle.
     void structure() {
         std::vector<std::vector<int>> rods(workload_.particles());
         for (int end = 0; end < 2 * workload_.rods(); ++end) rods[workload_.ends[end]].push_back(end);
@@ -112,7 +112,7 @@ private:
         if (solver_.info() != Eigen::Success) throw std::runtime_error("A has no factor");
     }
 
-    // Takes W Jᵀ λ off.
+    // Subtracts W Jᵀ λ.
     void pull(Eigen::Ref<Vector> from, const Vector& lambda) const {
         for (int rod = 0; rod < workload_.rods(); ++rod) {
             const int a = workload_.ends[2 * rod], b = workload_.ends[2 * rod + 1];

@@ -1,8 +1,8 @@
-"""What every engine in Python shares: the workload, the frame loop with its clock, the trajectory it leaves.
+"""Shared by the engines in Python: the workload, the frame loop with its clock, the trajectory.
 
     ENGINE.py WORKLOAD.json LIMIT OUTPUT key=value …
 
-prints the CPU seconds of the stepping alone and, if the run ended early, why. OUTPUT gets positions [m] and velocities
+prints the CPU seconds of the steps alone and the reason of an early end. OUTPUT gets positions [m] and velocities
 [m/s] of every frame as little-endian f64 (crates/qhat-bench/src/trajectory.rs reads it).
 """
 
@@ -15,17 +15,17 @@ from pathlib import Path
 import numpy as np
 
 Read = Callable[[], tuple[np.ndarray, np.ndarray]]
-"""Tells positions [m] and velocities [m/s], (n, d) numbers each."""
+"""Returns positions [m] and velocities [m/s], (n, d) numbers each."""
 
 Simulate = Callable[["Recorder"], None]
-"""Runs a motion from its start, handing each frame to the recorder until that has enough."""
+"""Runs a motion from its start and hands each frame to the recorder, until the recorder ends the run."""
 
 RUNS = 3
-"""Of a run that takes under a second the quickest of this many counts."""
+"""Number of runs if a run takes under a second; the fastest counts."""
 
 
 class Workload:
-    """Particles, rods and gravity, as the neutral file has them."""
+    """Particles, rods and gravity of the neutral file."""
 
     def __init__(self, path: str):
         file = json.loads(Path(path).read_text())
@@ -40,12 +40,12 @@ class Workload:
         self.lengths = np.array(file["lengths"])
 
     def in_space(self, vectors: np.ndarray) -> np.ndarray:
-        """The same in three dimensions, z = 0 where there is none."""
+        """The workload in three dimensions; z = 0 for a workload in the plane."""
         return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, 3 - self.dimension)])
 
 
 class Recorder:
-    """Takes in the frames of a motion as they come, and holds the clock while it does."""
+    """Records the frames of a motion. The clock is stopped while it does."""
 
     def __init__(self, workload: Workload, limit: float):
         self.workload = workload
@@ -56,7 +56,7 @@ class Recorder:
         self.since = time.process_time()
 
     def frame(self, read: Read) -> bool:
-        """Adds a frame and tells whether to go on. The clock stands while `read` tells positions and velocities."""
+        """Adds a frame and returns whether to go on. The clock is stopped while `read` is called."""
         self.cpu += time.process_time() - self.since
         positions, velocities = read()
         if np.isfinite(positions).all() and np.isfinite(velocities).all():
@@ -71,7 +71,7 @@ class Recorder:
         return len(self.frames) // 2
 
     def judge(self) -> None:
-        # A tenth of the limit is enough to see that a run will take one and a half of it.
+        # After a tenth of the limit it is clear whether a run will take one and a half times the limit.
         estimate = self.cpu / self.count() * self.workload.frames
         if self.count() < self.workload.frames and (
             self.cpu > self.limit or (self.cpu > self.limit / 10 and estimate > 1.5 * self.limit)
@@ -104,7 +104,7 @@ def main(begin: Callable[[Workload, dict[str, str]], Simulate]) -> None:
         recorder = Recorder(workload, float(limit))
         try:
             simulate(recorder)
-        except Exception as error:  # Whatever an engine throws is what became of this run.
+        except Exception as error:  # Any exception of an engine is the result of this run.
             recorder.ended = " ".join(str(error).split())
         if not recorder.ended and recorder.count() < workload.frames:
             recorder.ended = "the engine gave up"

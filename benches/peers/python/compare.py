@@ -1,9 +1,9 @@
-"""Runs qhat and every other engine on the same workloads, one after the other, and measures what each leaves behind.
+"""Runs qhat and every other engine on the same workloads, one after the other, and measures the trajectory of each.
 
     compare.py BUILT PEERS.csv [WORKLOAD …]
 
-BUILT is the folder of the built engines and of qhat-bench. With workloads named, only those are run, and nothing is
-written. A setting that takes more than LIMIT of CPU time is stopped; the dearer ones after it are not tried.
+BUILT is the folder of the built engines and of qhat-bench. If workloads are named, only these are run, and no file is
+written. A setting that takes more than LIMIT of CPU time is stopped, and the more expensive settings are skipped.
 """
 
 import csv
@@ -35,14 +35,14 @@ COLUMNS = (
 
 @dataclass
 class Engine:
-    """An engine in one way of using it, with settings from its default or cheapest to its dearest."""
+    """An engine used in one way, with settings from its default or cheapest to its most expensive."""
 
     name: str
     version: str
     command: list[str]
     settings: list[str]
     suits: str = ""
-    """A pattern of the workloads it can hold."""
+    """A pattern of the names of the workloads that the engine can simulate."""
 
 
 def substeps(*counts: int, then: str = "") -> list[str]:
@@ -50,7 +50,7 @@ def substeps(*counts: int, then: str = "") -> list[str]:
 
 
 def engines() -> list[Engine]:
-    """All but qhat itself. Substeps are steps in a frame of 1/60 s."""
+    """All engines except qhat. Substeps are steps in a frame of 1/60 s."""
     chains, plane, meshes = "chain|heavy", "chain|heavy|truss|net", "truss|net|cloth"
     manifest = (PYTHON.parent / "rapier/Cargo.toml").read_text()
     rapier = re.search(r'rapier2d-f64 = "=(.*)"', manifest)[1]
@@ -135,9 +135,9 @@ def said(command: list[object]) -> str:
 
 
 def simulate(command: list[object], folder: Path) -> tuple[float, str]:
-    """CPU seconds of the stepping, and why the run ended early."""
-    # What an engine does before its first frame, or within one, no other limit sees. This one is of real time: under a
-    # limit of the system on CPU time its clock of CPU time was seen to go in steps of 4 ms.
+    """CPU seconds of the steps, and the reason of an early end."""
+    # No other limit covers the work before the first frame or within a frame. This limit is on real time, because a
+    # limit of the system on CPU time makes the clock of CPU time advance in steps of 4 ms.
     last = 4 * LIMIT + 30
     words = [str(word) for word in command]
     try:
@@ -172,7 +172,7 @@ def row(engine: Engine, workload: str, setting: str, folder: Path) -> dict[str, 
 
 
 def line(told: dict[str, object]) -> str:
-    """A row to read while the rest runs."""
+    """A row of results, to be read while the other runs continue."""
     columns = ("cpu_ms_per_simulated_s", "worst_length_error", "energy_error")
     cost, worst, energy = (float(told[name]) for name in columns)
     what = f"{told['workload']:<10} {told['engine']:<17} {told['setting']:<42}"
@@ -201,7 +201,7 @@ def main() -> None:
         for told in rows(wanted):
             print(line(told), flush=True)
         return
-    # Beside the table until it is complete, so that a run that is broken off leaves the old one.
+    # Written beside the table until it is complete, so that an interrupted run keeps the old table.
     unfinished = results.with_suffix(".unfinished")
     with open(unfinished, "w", newline="", buffering=1) as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")

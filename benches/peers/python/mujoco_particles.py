@@ -16,7 +16,7 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
     spec.option.timestep = workload.frame / substeps
     spec.option.gravity = workload.in_space(workload.gravity)
     spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{setting['integrator'].upper()}")
-    # Without the second, a motion that blew up would start anew as if nothing had been.
+    # Without the second flag, MuJoCo would restart a motion that diverged, without an error.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_AUTORESET
     starts = workload.in_space(workload.positions)
     for i, (start, mass, fixed) in enumerate(zip(starts, workload.masses, workload.fixed)):
@@ -29,7 +29,7 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
         tendon = spec.add_tendon(name=f"t{i}")
         tendon.wrap_site(f"s{a}")
         tendon.wrap_site(f"s{b}")
-        # Lengths at the start are the rods'; the equality keeps the tendon there.
+        # A tendon has the length of its rod at the start; the equality keeps it at that length.
         equality = spec.add_equality(type=mujoco.mjtEq.mjEQ_TENDON, name1=f"t{i}")
         if setting["stiff"] == "1":
             equality.solref = [2 * spec.option.timestep, 1.0]

@@ -1,5 +1,5 @@
-"""MuJoCo's own way for a chain: an articulated tree of hinges, whose rods cannot change their length at all. The hinge
-angles are what drifts, so only the energy tells its error. Chains only.
+"""A chain in MuJoCo as an articulated tree of hinges, whose rods cannot change their length. The error is in the angles
+of the hinges, so only the energy shows it. Chains only.
 
     substeps     steps a frame
     integrator   Euler, implicitfast or RK4
@@ -16,13 +16,13 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
     spec.option.timestep = workload.frame / substeps
     spec.option.gravity = workload.in_space(workload.gravity)
     spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{setting['integrator'].upper()}")
-    # Without the second, a motion that blew up would start anew as if nothing had been.
+    # Without the second flag, MuJoCo would restart a motion that diverged, without an error.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_AUTORESET
     starts = workload.in_space(workload.positions)
     parent, at = spec.worldbody, starts[0]
     for i in range(1, len(starts)):
-        # A body begins at its hinge and carries one particle at its end. MuJoCo wants some moment of inertia: a
-        # millionth of m r² changes the motion less than the steps do.
+        # A body begins at its hinge and has one particle at its end. MuJoCo needs a moment of inertia: a millionth of m
+        # r² changes the motion less than the steps do.
         rod = starts[i] - starts[i - 1]
         pos = starts[0] if i == 1 else starts[i - 1] - at
         inertia = [workload.masses[i] * 1e-6 * (rod @ rod)] * 3

@@ -1,9 +1,9 @@
-"""OpenMM: particles with distance constraints (CCMA), no other force than gravity, on its Reference platform in f64.
+"""OpenMM: particles with distance constraints (CCMA), with gravity only, on its Reference platform in f64.
 
     substeps     steps a frame
     tolerance    of the constraints, relative (its default is 1e-5)
 
-Units are nm, ps and u in OpenMM; here they stand for m, s and kg, which changes nothing, for only gravity acts.
+Units are nm, ps and u in OpenMM; here they stand for m, s and kg. This has no effect, because only gravity acts.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ import openmm
 from adapter import Simulate, Workload, by_frames, main
 
 HELD = 1e12
-"""A constraint may not involve a particle that OpenMM holds still, so held ones are this heavy, and weightless [kg]."""
+"""Mass of fixed particles, without weight [kg]: OpenMM allows no constraints on particles that it holds itself."""
 
 
 def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
@@ -38,8 +38,8 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
         return context.getState(velocities=True).getVelocities(asNumpy=True)._value[:, :d]
 
     def step() -> None:
-        # Leapfrog velocities lie half a step from the positions: those of a frame are the mean of the two around it, so
-        # one step of the next frame is taken here already.
+        # Leapfrog velocities lie half a step from the positions. The velocity of a frame is the mean of the two around
+        # it, so the first step of the next frame is taken here.
         integrator.step(substeps if not held else substeps - 1)
         held["positions"] = context.getState(positions=True).getPositions(asNumpy=True)._value[:, :d]
         before = velocities()

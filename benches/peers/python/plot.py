@@ -1,4 +1,4 @@
-"""Work and precision: what every engine's worst length error costs, from a table that compare.py wrote.
+"""Work and precision: the cost of every engine against its largest length error, from a table of compare.py.
 
     plot.py PEERS.csv PICTURE.svg
 
@@ -26,7 +26,7 @@ PANELS = {
     "net32": "net32: 32 × 32 particles, planar",
 }
 
-# One colour and one mark an engine; qhat's is thick, with a line for each of its integrators.
+# A colour and a mark for each engine. The lines of qhat, one for each integrator, are thick.
 STYLES = {
     "qhat": ("#0b3d91", "o", "-"),
     "RATTLE, Eigen": ("#b2182b", "s", "-"),
@@ -43,11 +43,11 @@ STYLES = {
 
 
 Point = tuple[float, float, bool]
-"""Cost, error and whether the energy is right."""
+"""Cost, error, and whether the energy error is small."""
 
 
 def lines(rows: list[dict[str, str]], workload: str, engine: str) -> list[list[Point]]:
-    """The lines of an engine, each from its cheapest run on."""
+    """The lines of an engine, each from its cheapest run to its most expensive."""
     found: dict[str, list[Point]] = {}
     for row in rows:
         name = row["engine"]
@@ -77,7 +77,7 @@ def panel(axes: plt.Axes, rows: list[dict[str, str]], workload: str) -> None:
 
 
 def entry(engine: str) -> Line2D:
-    """Its line in the legend."""
+    """The line of the engine in the legend."""
     colour, mark, dashes = STYLES[engine]
     return Line2D([], [], color=colour, marker=mark, linestyle=dashes, label=engine)
 
@@ -96,7 +96,7 @@ def main() -> None:
     hollow.set_label(f"hollow: energy off by > {100 * ENERGY:.0f} %")
     figure.legend(handles=[*handles, hollow], loc="lower center", ncols=6, frameon=False, fontsize=9)
     figure.tight_layout(rect=(0, 0.11, 1, 1))
-    # No date inside, so that the same table draws the same file.
+    # Without a date, so that the same table gives the same file.
     figure.savefig(picture, metadata={"Date": None}, facecolor="white")
 
 

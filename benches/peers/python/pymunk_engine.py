@@ -2,7 +2,7 @@
 
     substeps     steps a frame
     iterations   of the solver a step (its default is 10)
-    bias         share of a joint's error that is left after a second; by default 0.9^60, the least is 0
+    bias         part of a joint's error that remains after a second; the default is 0.9^60, the least 0
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ def begin(workload: Workload, setting: dict[str, str]) -> Simulate:
     space.iterations = int(setting["iterations"])
     bodies = []
     for position, mass, fixed in zip(workload.positions, workload.masses, workload.fixed):
-        # Pins act on the centre, so that nothing turns a body and its moment never counts.
+        # Pins act on the centre, so no body turns and the moment of inertia has no effect.
         body = pymunk.Body(mass, float("inf"), pymunk.Body.STATIC if fixed else pymunk.Body.DYNAMIC)
         body.position = tuple(position)
         bodies.append(body)

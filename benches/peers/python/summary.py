@@ -1,4 +1,4 @@
-"""The cheapest setting of each engine that keeps an error, from a table that compare.py wrote.
+"""The cheapest setting of each engine that keeps an error bound, from a table of compare.py.
 
     summary.py PEERS.csv
 """
@@ -9,13 +9,13 @@ import sys
 from collections.abc import Iterable
 
 BOUNDS = (1e-2, 1e-3, 1e-6, 1e-9)
-"""Of the worst relative length error over the run."""
+"""Bounds on the largest relative length error of a run."""
 
 WRITTEN_HERE = ("RATTLE", "XPBD")
-"""Rivals in C++ rather than engines that people install."""
+"""Methods written in C++ for the comparison, not engines that people install."""
 
 ENERGY = 0.01
-"""Of the largest kinetic energy: a motion that has lost or gained more at the end is another motion."""
+"""Bound on the energy error at the end, relative to the largest kinetic energy: above it the motion is another one."""
 
 
 def cheapest(rows: list[dict[str, str]], bound: float, energy: float) -> float | None:
@@ -29,7 +29,7 @@ def cheapest(rows: list[dict[str, str]], bound: float, energy: float) -> float |
 
 
 def ratios(engines: dict[str, list[dict[str, str]]]) -> str:
-    """How many times cheaper qhat is at tight errors than others.
+    """The factor by which qhat is cheaper than other engines at small errors.
 
     The others are the engines that people install, at a loose length error, with any energy and with an energy that is
     about right, and RATTLE in C++ at the same tight errors.

@@ -1,4 +1,4 @@
-//! `qhat bench`: the table, the file, what is refused.
+//! `qhat bench`: the table, the file, and input that is refused.
 
 use crate::common::Folder;
 
@@ -18,10 +18,10 @@ fn a_workload_is_measured_under_one_setting() {
         let number = |name: &str| cell(name).parse::<f64>().unwrap();
         assert_eq!((cell("workload"), cell("integrator"), cell("ended")), (name, "dop853", "\"\""));
         assert_eq!(number("simulated_s"), 2.0);
-        // What qhat promises of every rod, and what a tolerance of 1e-4 is good for.
+        // The documented error of every rod, and the energy error that a tolerance of 1e-4 allows.
         assert!(number("worst_length_error") <= 1e-10 && number("energy_error").abs() <= 1e-2, "{line}");
         assert!(number("cpu_ms_per_simulated_s") > 0.0, "{line}");
-        // Both are open chains, a four-bar between its two nails too: in lanes no A is factored.
+        // Both are open chains (a four-bar linkage ends at its two nails): in lanes no A is factored.
         assert_eq!(number("factorizations"), 0.0, "{line}");
     }
 }

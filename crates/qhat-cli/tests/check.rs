@@ -35,7 +35,7 @@ fn counts_by_hand() {
     assert_eq!(counts(&braced), [6, 5, 3, 1]);
     assert_eq!(braced["redundant"], true);
 
-    // A rod between fixed particles constrains nothing and counts for nothing.
+    // A rod between fixed particles constrains nothing and is not counted.
     let held = [(0.0, 0.0, true), (1.0, 0.0, true), (0.5, 1.0, false)];
     let found = check(&truss(&held, &[(0, 1), (0, 2), (1, 2)]));
     assert_eq!((counts(&found), &found["rows"]), ([2, 2, 0, 0], &json!(3)));
@@ -44,7 +44,7 @@ fn counts_by_hand() {
 
 #[test]
 fn the_rank_is_that_of_the_bare_matrix() {
-    // Diagonal drag makes the sum A + ε I regular; the rank of A is what counts.
+    // Diagonal drag makes A + ε I regular; the rank is the rank of A.
     let square = [(0.0, 0.0, false), (1.0, 0.0, false), (1.0, 1.0, false), (0.0, 1.0, false)];
     let scene = truss(&square, &[(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)]);
     let mut scene: Value = serde_json::from_str(&scene).unwrap();
@@ -109,7 +109,7 @@ fn long_every_shipped_scene_passes() {
 
 #[test]
 fn components_are_named_with_their_method() {
-    // A square with one diagonal, hinged to nothing, and a pendulum.
+    // A free square with one diagonal, and a pendulum.
     let points = [
         (0.0, 0.0, false),
         (1.0, 0.0, false),

@@ -1,8 +1,9 @@
-//! `qhat run` on scenes where something happens: what it says about impacts, slipping and what broke.
+//! `qhat run` on scenes with events: its messages about impacts, slip and breaks.
 
 use crate::common::{Folder, Ran};
 
-/// A pendulum let go level with its hook: its rod carries 3 m g sin of the angle fallen, and breaks at 2 m g.
+/// A pendulum released from the horizontal. Its rod carries 3 m g sin φ at the angle φ below the horizontal, and breaks
+/// at 2 m g.
 const BREAKS: &str = r#"
 schema = "qhat/1"
 name = "Breaks"
@@ -13,7 +14,7 @@ particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = 
 constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
 "#;
 
-/// Falls 0.2 m, which takes 0.2 s, onto a ground from which nothing comes back.
+/// A particle that falls 0.2 m in 0.2 s onto ground without restitution.
 const LANDS: &str = r#"
 schema = "qhat/1"
 name = "Lands"

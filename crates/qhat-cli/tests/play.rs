@@ -1,4 +1,4 @@
-//! `qhat play`: the page, to this machine only.
+//! `qhat play`: serves the page, to this machine only.
 
 #[test]
 #[cfg(not(feature = "page"))]
@@ -13,7 +13,7 @@ mod served {
     use std::net::TcpStream;
     use std::process::{Child, Command, Stdio};
 
-    /// A command that serves, until it is dropped.
+    /// A command that serves until this value is dropped.
     struct Server {
         child: Child,
         address: String,
@@ -66,7 +66,7 @@ mod served {
         }
         let page = String::from_utf8(body).unwrap();
         assert!(page.contains("<title>qhat</title>"), "{page}");
-        // Whatever the page asks for is there, of the right type.
+        // All files that the page requests are served with the correct type.
         let addresses = page.split(['"', '\'']).filter_map(|part| part.strip_prefix("./"));
         for address in addresses {
             let (head, _) = server.get(&format!("/{address}?query"));
@@ -104,7 +104,7 @@ mod served {
         assert!(head.contains("X-Qhat-Scene-Name: mein%20B%C3%A4umchen.toml"), "{head}");
         assert_eq!(body, PENDULUM.as_bytes());
 
-        // A file that was edited since is read again, so that reloading the page shows it.
+        // A file that was edited after the start is read again, so that a reload of the page shows the change.
         let edited = PENDULUM.replace("A bob", "Another bob");
         std::fs::write(folder.path("mein Bäumchen.toml"), &edited).unwrap();
         assert_eq!(server.get("/scene").1, edited.as_bytes());
@@ -120,7 +120,7 @@ mod served {
         let server = Server::start(&Folder::new(), &["pendulum"]);
         let host = &server.address;
         let status = |request: &str| server.ask(request).0.lines().next().unwrap().to_owned();
-        // A foreign page that had its own name point here must not read the scene.
+        // A foreign page whose host name points to this server must not read the scene.
         assert_eq!(status("GET /scene HTTP/1.1\r\nHost: evil.example\r\n\r\n"), "HTTP/1.1 403 Forbidden");
         assert_eq!(status("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), "HTTP/1.1 403 Forbidden");
         assert_eq!(status("GET / HTTP/1.1\r\n\r\n"), "HTTP/1.1 403 Forbidden");

@@ -1,4 +1,4 @@
-//! What the command refuses: always exit code 2, a message that says what to do, and every file as it was.
+//! Input that the command refuses: always with exit code 2, a message that says what to do, and no change of any file.
 
 use crate::common::{Folder, PENDULUM, QHAT, Ran};
 
@@ -55,7 +55,7 @@ fn a_scene_that_is_not_there_is_told_from_the_shipped_ones() {
 #[test]
 fn outputs_that_cannot_be_written_are_refused_before_the_run() {
     let folder = Folder::new();
-    // A run of this length would not end within the lifetime of the test.
+    // A run of this length does not end before the test does.
     let endless = |output: &str| folder.qhat(&["run", "pendulum", "--duration", "1e6", "-o", output]);
     endless("bob.txt").refused("end the name in .npz (NumPy arrays) or .csv");
     endless("bob").refused("end the name in .npz");
@@ -102,7 +102,7 @@ fn an_interrupted_run_keeps_and_marks_what_was_reached() {
     let mut command = Command::new(QHAT);
     command.current_dir(folder.root()).stdout(Stdio::null()).stderr(Stdio::piped());
     let child = command.args(["run", "bob.toml", "--duration", "1e5", "-o", "bob.csv"]).spawn().unwrap();
-    // It listens for Ctrl-C before it opens files, so the first file says that it does.
+    // The command listens for Ctrl-C before it opens files, so the test can wait for the first file.
     while folder.files() == ["bob.toml"] {
         std::thread::yield_now();
     }

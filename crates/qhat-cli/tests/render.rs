@@ -1,4 +1,4 @@
-//! `qhat render`: pictures read back by a parser of XML and a decoder of PNG, and what it refuses.
+//! `qhat render`: pictures, read back by a parser of XML and a decoder of PNG, and input that is refused.
 
 mod common;
 
@@ -6,7 +6,8 @@ use common::{Folder, INFEASIBLE, PENDULUM};
 use roxmltree::Document;
 use std::path::Path;
 
-/// A pendulum let go level with its hook: its rod carries 3 m g sin of the angle fallen, and breaks at 2 m g.
+/// A pendulum released from the horizontal. Its rod carries 3 m g sin φ at the angle φ below the horizontal, and breaks
+/// at 2 m g.
 const BREAKS: &str = r#"
 schema = "qhat/1"
 name = "Breaks"
@@ -33,7 +34,7 @@ fn has_class(svg: &str, class: &str) -> bool {
     Document::parse(svg).unwrap().descendants().any(|node| node.attribute("class") == Some(class))
 }
 
-/// Width and height, and how many colours there are.
+/// Width, height and the number of colours of a PNG.
 fn pixels(path: &Path) -> (u32, u32, usize) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
@@ -69,7 +70,7 @@ fn a_later_time_is_the_frame_that_a_run_writes() {
 
     folder.qhat(&["render", "bob.toml", "-o", "last.svg", "--from", "bob.npz"]).well();
     assert_eq!(drawn(&folder.read("last.svg")).1[1], "t = 0.5 s");
-    // Between two frames and beyond the scene's own duration.
+    // A time between two frames, and a time beyond the duration of the scene.
     folder.qhat(&["render", "bob.toml", "-o", "late.svg", "--at", "0.605"]).well();
     assert_eq!(drawn(&folder.read("late.svg")).1[1], "t = 0.605 s");
 }
@@ -105,7 +106,7 @@ fn a_broken_link_leaves_stubs_by_either_way() {
 
 #[test]
 fn a_run_that_ends_early_is_drawn_and_marked() {
-    // Explicit Euler without feedback flies off at steps of half a second.
+    // Explicit Euler without feedback diverges with steps of half a second.
     let euler = PENDULUM.replace("h = 0.01, duration = 0.5", "h = 0.5, duration = 100, integrator = \"euler\"");
     let folder = Folder::with(&[("euler.toml", &euler), ("torn.toml", INFEASIBLE)]);
     let ran = folder.qhat(&["render", "euler.toml", "-o", "euler.svg", "--at", "100"]);
@@ -164,7 +165,7 @@ fn a_trajectory_of_another_text_is_drawn_with_a_warning() {
     assert_eq!(ran.stderr, "`bob.npz` comes from another text of the scene `heavier.toml`\n");
 }
 
-/// Members that claim more than there is: refused, with no memory asked for.
+/// Members whose header claims more data than the file has are refused before memory is allocated.
 #[test]
 fn a_hostile_trajectory_is_refused() {
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);

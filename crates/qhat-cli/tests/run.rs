@@ -1,4 +1,4 @@
-//! `qhat run`: what it writes and what it says.
+//! `qhat run`: its files and its messages.
 
 use crate::common::{Folder, INFEASIBLE, PENDULUM, npz};
 
@@ -144,7 +144,7 @@ fn summary_has_what_scripts_need() {
     assert!(summary["substeps"].as_u64().unwrap() >= 50);
     assert_eq!(summary["warnings"], serde_json::json!([]));
     assert_eq!(summary["output"], "bob.npz");
-    // What every integrator that projects promises with the default constraint_tolerance, and rods of 1 m.
+    // The documented bound of integrators that project, for the default constraint_tolerance and rods of 1 m.
     assert!(summary["max_residual"].as_f64().unwrap() <= 1e-10);
     assert!(summary["max_relative_length_error"].as_f64().unwrap() <= 1e-10);
     for key in ["wall_seconds", "cpu_seconds", "energy_error", "energy_error_max"] {
@@ -194,7 +194,7 @@ fn scenes_come_from_stdin_by_name_and_as_json() {
 #[test]
 fn a_diverging_run_keeps_and_marks_what_was_reached() {
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);
-    // Explicit Euler without feedback flies off at steps of half a second.
+    // Explicit Euler without feedback diverges with steps of half a second.
     let euler = ["run", "bob.toml", "--integrator", "euler", "--h", "0.5", "--duration", "100", "--json"];
     for output in ["bob.npz", "bob.csv"] {
         let ran = folder.qhat(&[&euler[..], &["-o", output]].concat());
@@ -220,7 +220,7 @@ fn an_infeasible_start_is_marked() {
     assert_eq!(ran.code, 1, "{ran:?}");
     let summary = ran.json();
     assert_eq!((&summary["status"], &summary["frames"]), (&"infeasible".into(), &1.into()));
-    // The rod from b is √(4² + 0.5²) m long where it should be 1 m; three decimals tell it from every other.
+    // The rod from b is √(4² + 0.5²) m long where it should be 1 m; three decimals distinguish it from every other rod.
     assert!((summary["max_relative_length_error"].as_f64().unwrap() - 3.031).abs() < 1e-3, "{summary}");
     let arrays = npz::read(&folder.path("torn.npz"));
     assert_eq!(arrays["positions"].numbers(), [0.0, 0.0, 5.0, 0.0, 1.0, 0.5]);

@@ -16,7 +16,7 @@ fn scenes_are_listed_and_printed() {
         }
         let text = folder.qhat(&["scenes", name]).well().stdout;
         assert!(text.contains("schema = \"qhat/1\""), "{name}");
-        // What is printed can be read again.
+        // The printed scene can be read again.
         folder.qhat_reading(&text, &["check", "-"]).well();
     }
     assert!(list.iter().any(|scene| scene["name"] == "pendulum"));
@@ -77,7 +77,7 @@ fn commands(document: &str, start: &str) -> Vec<String> {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(document);
     let text = std::fs::read_to_string(path).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    ")?.strip_prefix(start));
-    // The page does not end by itself; tests/play.rs has it.
+    // `qhat play` does not end by itself; tests/play.rs tests it.
     lines.filter(|line| !line.starts_with("play")).map(|line| format!("qhat {line}")).collect()
 }
 
@@ -90,7 +90,7 @@ fn every_command_in_the_documents_runs() {
         assert!(lines.len() >= 3, "{document} has commands");
         let qhat = format!("qhat() {{ '{QHAT}' \"$@\"; }}");
         for line in lines {
-            // One after the other in one folder: later lines use what earlier ones wrote.
+            // The commands run one after the other in one folder, because later lines use files of earlier lines.
             let script = format!("{qhat}\n{line}");
             let output = Command::new("sh").args(["-c", &script]).current_dir(folder.root()).output().unwrap();
             assert_eq!(
@@ -103,7 +103,7 @@ fn every_command_in_the_documents_runs() {
     }
 }
 
-/// Whether a line of a document is one of a command's output; `…` stands for what differs from run to run.
+/// Whether a line of a document occurs in the output of a command; `…` stands for text that differs from run to run.
 #[cfg(unix)]
 fn is_said(shown: &str, said: &str) -> bool {
     said.lines().any(|line| {

@@ -1,7 +1,7 @@
 //! A table of broken scenes and their exact messages: `broken/NAME.toml` or `.json`, and beside it the same name with
-//! `.txt` behind. `{every kind of constraint}` in a message stands for the list that the schema has, so that a new kind
+//! `.txt` appended. `{every kind of constraint}` in a message stands for the list in the schema, so that a new kind
 //! changes no message. `UPDATE=1 cargo test --package qhat-scene --test all broken` writes the messages anew; read the
-//! difference.
+//! diff before you commit it.
 
 use qhat_scene::{Format, json_schema, load};
 use std::fs;

@@ -1,5 +1,5 @@
 //! `classic.toml`, the set-up of the source, computed a second time: the source's equations in a dense textbook
-//! implementation that shares nothing with the engine but the numbers of the scene. Every frame must agree.
+//! implementation that shares only the numbers of the scene with the engine. Every frame must agree.
 //!
 //! ```text
 //! nail      C = |x − p|²        dC/dx = 2 (x − p)                  dĊ/dx = 2 v
@@ -14,7 +14,7 @@ use qhat::{Constraint, DistanceForm, Force, Integrator, NailForm, System};
 
 type Matrix = Vec<Vec<f64>>;
 
-/// The numbers of the scene: two dimensions, and only what the source has.
+/// The numbers of the scene: two dimensions, and only the constraints and forces of the source.
 struct Source<'a> {
     system: &'a System,
 }
@@ -144,8 +144,8 @@ fn eliminate(mut A: Matrix, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// 300 frames; roundoff of 1e-16 a frame, which the motion of the scene multiplies by far less than the 1e6 allowed
-/// for.
+/// 300 frames. Each has a roundoff of 1e-16. A factor of 1e6 is allowed for the sensitivity of the motion, which is far
+/// smaller.
 const FRAMES: usize = 300;
 const TOLERANCE: f64 = 1e-9;
 
@@ -166,7 +166,8 @@ fn engine_agrees_with_a_textbook_implementation_of_the_source() {
     for frame in 0..FRAMES {
         let (qdd, lambda) = source.solve(&q, &qd);
         let terms = simulation.terms();
-        // λ of a loose nail is large, and its row of A little more than ε: relative to the largest.
+        // λ of a loose nail is large, because its row of A is little more than ε: the error is relative to the largest
+        // λ.
         let size = lambda.iter().fold(1.0, |most: f64, l| most.max(l.abs()));
         near(&terms.multipliers, &lambda, TOLERANCE * size, "λ", frame);
         for k in 0..q.len() {

@@ -1,4 +1,4 @@
-//! The same bits everywhere: a hash of q, q̇ and λ after some steps of shipped scenes, the same in debug, in release
+//! The same bits on every target: a hash of q, q̇ and λ after some steps of shipped scenes, equal in debug, in release
 //! and in WebAssembly (`crates/qhat-wasm/tests/golden.mjs` reads the same file).
 //!
 //! A change that is meant to change bits, in the engine or in a scene, writes the file anew:
@@ -56,7 +56,7 @@ fn every_case_ends_in_the_same_bits() {
     }
 }
 
-/// The hash itself, by its published test vectors: of nothing, and of the byte 0 eight times by hand.
+/// The hash itself: the published test vector of the empty input, and the hash of eight zero bytes, computed by hand.
 #[test]
 fn hash_is_fnv_1a() {
     assert_eq!(hash([].iter()), 0xcbf2_9ce4_8422_2325);

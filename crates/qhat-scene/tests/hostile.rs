@@ -1,11 +1,11 @@
-//! Whatever the text is, the reader answers: a scene or errors, soon, and never a panic.
+//! The reader answers every text with a scene or with errors, quickly and without a panic.
 
 use proptest::prelude::*;
 use qhat_scene::{Format, load, load_bytes, shipped};
 
 const FORMATS: [Format; 2] = [Format::Toml, Format::Json];
 
-/// A shipped scene or the scene with every key, in one of the two formats. The longest are left to other tests.
+/// A shipped scene or the scene with every key, in one of the two formats. Other tests have the longest scenes.
 fn text() -> impl Strategy<Value = (String, Format)> {
     let short = shipped().iter().map(|scene| scene.text).filter(|text| text.len() < 3000);
     let texts: Vec<&str> = short.chain([include_str!("every-key.toml")]).collect();
@@ -15,14 +15,14 @@ fn text() -> impl Strategy<Value = (String, Format)> {
     })
 }
 
-/// A change of bytes: where, how many are removed, what comes in their place.
+/// A change of bytes: its position, the number of bytes removed, and the bytes inserted.
 fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> {
     let syntax = prop::sample::select(b"[]{}\",.=:-+eE0123456789\n #'\\ntafiulse_".to_vec());
     let bytes = prop::collection::vec(prop_oneof![8 => syntax, 1 => any::<u8>()], 0..4);
     prop::collection::vec((any::<prop::sample::Index>(), 0_usize..6, bytes), 1..6)
 }
 
-/// `make fuzz` sets QHAT_FUZZ and tries so many times as many.
+/// The number of cases; `make fuzz` multiplies it by QHAT_FUZZ.
 fn cases() -> u32 {
     4000 * std::env::var("QHAT_FUZZ").map_or(1, |times| times.parse::<u32>().expect("QHAT_FUZZ is a whole number"))
 }
@@ -111,7 +111,7 @@ fn the_format_follows_the_name() {
     assert_eq!(Format::from_path("json"), Format::Toml);
 }
 
-/// Each limit of an expression is told at its place, soon, and nothing of it is evaluated.
+/// An expression above a limit gives an error at its position, quickly, and is not evaluated.
 #[test]
 fn expressions_are_limited() {
     let names: Vec<String> = (0..65).map(|i| format!("p{i}")).collect();

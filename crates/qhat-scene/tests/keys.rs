@@ -1,4 +1,5 @@
-//! Every key of the schema has words in the schema, a place in the guide and a use in the scenes of these tests.
+//! Every key of the schema has a description in the schema, a place in the guide and a use in the scenes of these
+//! tests.
 
 use qhat_scene::json_schema;
 use serde_json::Value;

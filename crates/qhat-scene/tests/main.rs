@@ -1,7 +1,6 @@
-//! Tests of the reader from outside, in one binary, but `golden.rs`: that one is compiled a second time, for a debug
-//! build, and should not take the others with it. Names that begin with `long_` simulate for seconds of real time;
-//! `make check` leaves them to `make test`. What the schema allows is held to the reader in the crate
-//! `qhat-schema-test`.
+//! Tests of the public interface of the reader, in one binary. `golden.rs` has a binary of its own, because it is
+//! compiled a second time, for a debug build. Names that begin with `long_` simulate for seconds of real time; `make
+//! check` leaves them to `make test`. The crate `qhat-schema-test` compares the schema with the reader.
 
 mod broken;
 mod classic;

@@ -1,4 +1,4 @@
-//! Parameters of the whole scene: a name is the number it stands for, in every expression, to the bit.
+//! Parameters of the whole scene: in every expression a name gives the same bits as its number.
 
 use qhat_scene::{Format, load};
 
@@ -65,7 +65,7 @@ fn end(text: &str) -> Vec<f64> {
     [simulation.state().positions(), simulation.state().velocities()].concat()
 }
 
-/// The text with numbers in the place of names.
+/// The text with numbers in place of names.
 fn spelt(text: &str, numbers: &[(&str, &str, &str)]) -> String {
     let is_letter = |letter: char| letter.is_alphanumeric() || letter == '_';
     let number = |word: &str| numbers.iter().find(|(name, ..)| *name == word).map(|(_, number, _)| *number);
@@ -86,7 +86,7 @@ fn a_name_is_its_number_in_every_expression() {
     let (_, rest) = rest.split_once("k = 0.5\n").unwrap();
     let named = end(SCENE);
     assert_eq!(named, end(&format!("{top}{}", spelt(rest, &numbers))));
-    // Each of them counts.
+    // Each parameter changes the motion.
     for (name, number, other) in numbers {
         let changed = SCENE.replace(&format!("\n{name} = {number}\n"), &format!("\n{name} = {other}\n"));
         assert_ne!(changed, SCENE);

@@ -1,4 +1,4 @@
-//! Every recipe of docs/recipes.md, put into the scene at its head, is read and moves.
+//! Every recipe of docs/recipes.md, inserted into the scene at the head of that document, is read and moves.
 
 use qhat_scene::{Format, load};
 

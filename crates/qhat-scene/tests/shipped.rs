@@ -1,4 +1,4 @@
-//! The shipped scenes: every file listed, every expectation held, every rod as long as it should be.
+//! The shipped scenes: every file is in the list, every expectation holds, and every rod has its length.
 
 use crate::expectations;
 use qhat::{Feedback, Integrator, Settings, Simulation};
@@ -6,7 +6,7 @@ use qhat_scene::{Format, Scene, load, shipped};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Simulated time over which lengths are held, at least [s].
+/// Least simulated time over which lengths are checked [s].
 const LONG: f64 = 60.0;
 
 fn scene(name: &str) -> Scene {
@@ -35,7 +35,7 @@ fn the_list_is_the_folder() {
     assert!(listed.len() >= 12);
 }
 
-/// Lists show the scenes heading by heading, so the scenes of a heading stand together.
+/// The scenes of a heading follow each other, because lists show the scenes heading by heading.
 #[test]
 fn every_heading_is_there_once() {
     let mut headings: Vec<&str> = shipped().iter().map(|scene| scene.group).collect();
@@ -59,7 +59,8 @@ fn every_scene_says_what_there_is_to_see() {
     }
 }
 
-/// The start in a file may be off by what its decimals leave out, no more: what a user reads is what runs.
+/// The start in a file may differ from the projected start only by the rounding of its decimals: the run starts at the
+/// numbers that a user reads.
 #[test]
 fn every_scene_starts_where_its_file_says() {
     for shipped in shipped() {
@@ -82,8 +83,8 @@ fn long_every_scene_shows_what_it_says() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// A pendulum let go from the horizontal under explicit Euler, which gains energy and leaves the circle: each of these
-/// is untrue of it, and found to be.
+/// A pendulum released from the horizontal under explicit Euler gains energy and leaves the circle. Each of these
+/// expectations is false for it, and the check reports each.
 #[test]
 fn an_expectation_that_does_not_hold_is_found() {
     let pendulum = shipped().iter().find(|scene| scene.name == "pendulum").unwrap();
@@ -110,7 +111,7 @@ fn an_expectation_that_does_not_hold_is_found() {
     assert_eq!(expectations::failures(&silent, LONG), Vec::<String>::new());
 }
 
-/// Runs for a duration with these menus; the time at which it fell apart.
+/// Runs for a duration with these settings of the two menus; returns the time at which the scene diverged.
 fn falls_apart(scene: &Scene, feedback: Feedback, duration: f64) -> Option<f64> {
     let mut simulation = scene.simulation().unwrap();
     simulation.set_feedback(feedback).unwrap();
@@ -122,7 +123,7 @@ fn falls_apart(scene: &Scene, feedback: Feedback, duration: f64) -> Option<f64> 
     None
 }
 
-/// What the scene is for: the two menus of the source are what keeps it together.
+/// The purpose of the scene: only the two menus of the source keep it from diverging.
 #[test]
 fn long_classic_needs_both_its_menus() {
     let scene = scene("classic");
@@ -133,7 +134,7 @@ fn long_classic_needs_both_its_menus() {
     assert!(falls_apart(&scene, Feedback { diagonal_drag: 0.1 * menus.diagonal_drag, ..menus }, 10.0).is_some());
 }
 
-/// The same scene in the modern forms under rattle needs neither.
+/// The same scene in the modern forms under rattle needs neither menu.
 #[test]
 fn long_classic_holds_under_rattle() {
     let scene = scene("classic");

@@ -16,7 +16,7 @@ pub fn shapes(system: &System, state: &State) -> Vec<Shape> {
 
 /// The driven shapes of a system at t \[s\], in the same order as in [`shapes`].
 ///
-/// Front ends that draw between two states need the shapes at a time between those of the states.
+/// Front ends that draw between two states need the driven shapes at a time between the two states.
 pub fn driven_shapes(system: &System, state: &State, t: f64) -> Vec<Shape> {
     shapes_at(system, state, t).into_iter().filter(|shape| shape.driven).collect()
 }

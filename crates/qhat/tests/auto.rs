@@ -1,4 +1,4 @@
-//! What auto chooses, and that its choice depends on nothing but the state.
+//! The integrator that auto chooses, and that the choice depends on the state only.
 
 use crate::systems::{self, FRAME};
 use qhat::{Integrator, Settings, Simulation, Solver, Warning, Workspace, step};
@@ -7,7 +7,7 @@ fn settings(frame_work: usize) -> Settings {
     Settings { frame_work, ..systems::settings(Integrator::Auto, FRAME) }
 }
 
-/// What can be followed is dop853's, bit for bit.
+/// Auto runs dop853, bit for bit, as long as dop853 can follow the motion within its limits.
 #[test]
 fn long_with_work_to_spare_it_is_dop853() {
     for (system, state) in [systems::chain(100, 1000.0), systems::net(4), systems::double_pendulum()] {
@@ -24,7 +24,7 @@ fn long_with_work_to_spare_it_is_dop853() {
     }
 }
 
-/// Under a billion beads ω is 2e6/s and more, thousands of substeps of h ω = 5 a frame.
+/// Under a load of a billion beads ω is 2e6/s and more: a frame would take thousands of substeps with h ω = 5.
 #[test]
 fn a_load_that_cannot_be_followed_is_carried_at_the_end_of_the_step() {
     let (system, state) = systems::chain(100, 1e9);
@@ -39,16 +39,16 @@ fn a_load_that_cannot_be_followed_is_carried_at_the_end_of_the_step() {
             assert!(matches!(report.warnings[..], [Warning::TooStiff { .. }]), "{:?}", report.warnings);
         }
     }
-    // While the load falls the chain is slack enough; it is not where the load swings through.
+    // While the load falls, the tension is low enough for dop853; it is too high when the load swings through.
     assert!(by_bdf2 >= 30, "{by_bdf2} frames of 120");
-    // Its pendulum loses little: bdf2 damps what h cannot show, and nothing else.
+    // The pendulum loses little energy: bdf2 damps only motion that is too fast for h.
     assert!(simulation.energy_error().abs() < 0.05, "{:e}", simulation.energy_error());
 }
 
 #[test]
 fn a_page_stays_within_its_work_and_tries_again() {
     let (system, state) = systems::chain(40, 100.0);
-    // 25 substeps of 12 solves of 40 rows: too few for the crack, enough for what comes after.
+    // 25 substeps of 12 solves of 40 rows: too few for the crack of the whip, enough for the motion after it.
     let mut simulation = Simulation::new(system, state, settings(12_000)).unwrap();
     let mut chosen = Vec::new();
     for _ in 0..240 {
@@ -59,12 +59,12 @@ fn a_page_stays_within_its_work_and_tries_again() {
     }
     let changes = chosen.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert!(changes >= 2, "it went over and came back: {changes} changes");
-    // Once gone over, it stays for the rest of 30 frames.
+    // Once auto has changed to bdf2, it stays there for the rest of 30 frames.
     let first = chosen.iter().position(|&integrator| integrator == Integrator::Bdf2).unwrap();
     assert!(chosen[first..first + 30].iter().all(|&integrator| integrator == Integrator::Bdf2));
 }
 
-/// Save, load, go on: also in the middle of resting.
+/// A run that is saved and loaded gives the same bits, also while auto waits for its next try of dop853.
 #[test]
 fn a_restart_changes_no_bit() {
     let (system, state) = systems::chain(40, 100.0);
@@ -80,7 +80,8 @@ fn a_restart_changes_no_bit() {
     }
 }
 
-/// A row of a net takes as long as sixteen of a chain: fifteen substeps' worth of chain rows allow none of a net.
+/// A row of a net costs as much as sixteen rows of a chain: a limit of fifteen substeps of chain rows allows no substep
+/// of a net.
 #[test]
 fn rows_outside_the_lanes_count_sixteenfold() {
     for ((system, state), expected) in
@@ -92,7 +93,7 @@ fn rows_outside_the_lanes_count_sixteenfold() {
     }
 }
 
-/// A frame in two parts ends where the frame ends, to the last bit.
+/// A frame that is run in two parts ends at the same time as the whole frame, to the last bit.
 #[test]
 fn time_goes_in_whole_frames() {
     let (system, state) = systems::chain(40, 100.0);

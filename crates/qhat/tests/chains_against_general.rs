@@ -1,4 +1,4 @@
-//! Open chains in lanes against the general path: the same motion, whatever their masses, ends and forces.
+//! Open chains in lanes against the general path: the same motion for all masses, ends and forces.
 
 use crate::systems::open_chains::open_chains;
 use crate::systems::{self, FRAME};
@@ -23,16 +23,16 @@ fn long_lanes_move_any_open_chains_as_the_general_path_does() {
         assert_eq!((by, by_rows), (Solver::Chains, Solver::Rows), "seed {seed}");
         let pairs = lanes.state().positions().iter().zip(general.state().positions());
         let farthest = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-        // Whipping chains multiply an error of 1e-11 a substep; at 1e-9 one of these came out 2e-4 m apart.
+        // Whipping chains multiply an error of 1e-11 a substep. At 1e-9 the two runs of one case ended 2e-4 m apart.
         assert!(farthest < 1e-6, "seed {seed}: {farthest:e} m apart");
-        // What drag and dampers take is in the account of both.
+        // Both accounts contain the energy that drag and dampers take.
         for simulation in [&lanes, &general] {
             assert!(simulation.energy_error().abs() < 1e-7, "seed {seed}: {:e}", simulation.energy_error());
         }
     }
 }
 
-/// Of the heaviest loads the lanes see no more than a small w.
+/// For the heaviest loads, w is close to zero.
 #[test]
 fn long_lanes_take_a_load_of_a_billion() {
     for seed in 0..20 {

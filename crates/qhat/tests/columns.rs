@@ -6,21 +6,21 @@ use std::path::{Path, PathBuf};
 /// Columns of a line. Two windows fit beside each other on a common screen, and a review shows no wrapped line.
 const COLUMNS: usize = 120;
 
-/// Folders whose files nobody wrote by hand, or whose texts are stored as a test needs them.
+/// Folders with generated files, or with texts that are stored exactly as a test needs them.
 const SKIPPED_FOLDERS: [&str; 9] =
     [".git", "target", "node_modules", "dist", "broken", "golden", "__pycache__", ".venv", "test-results"];
 
-/// Folders that are built, by their path from the root.
+/// Folders that a build makes, by their path from the root.
 const BUILT: [&str; 1] = ["playground/src/wasm"];
 
 /// Files that a tool writes.
 const GENERATED: [&str; 2] = ["package-lock.json", "Cargo.lock"];
 
-/// Endings of files that people write.
+/// Endings of hand-written files.
 const ENDINGS: &str = "rs md toml ts mts svelte css html js mjs json jsonc py cpp hpp sh cff yml yaml editorconfig \
     gitattributes";
 
-/// Files without an ending that people write, by their path from the root.
+/// Hand-written files without an ending, by their path from the root.
 const NAMED: [&str; 5] = ["Makefile", "scripts/setup", "scripts/build-wasm", ".ci/run", "benches/peers/run"];
 
 fn root() -> PathBuf {
@@ -47,8 +47,8 @@ fn collect(root: &Path, folder: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Whether a line may be longer: a row of a table, which no language lets go on in the next line, in Markdown or in a
-/// comment; or one long address and nothing else.
+/// Whether a line may be longer: a row of a table in Markdown or in a comment, which cannot be continued on the next
+/// line, or a line with one long address only.
 fn is_excepted(line: &str) -> bool {
     let content = line.trim_start().trim_start_matches(['/', '!', '#', '*', '<', '>']).trim();
     let is_table = content.starts_with('|') && content.ends_with('|');
@@ -56,7 +56,7 @@ fn is_excepted(line: &str) -> bool {
     is_table || is_address
 }
 
-/// Columns that a line takes: a dot or hat over a letter, as in q̇ and Q̂, takes none of its own.
+/// Number of columns of a line. A dot or hat over a letter, as in q̇ and Q̂, takes no column of its own.
 fn columns(line: &str) -> usize {
     line.chars().filter(|letter| !('\u{300}'..='\u{36f}').contains(letter)).count()
 }

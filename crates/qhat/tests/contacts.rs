@@ -1,4 +1,4 @@
-//! Contacts, ropes, friction and what breaks, against closed forms.
+//! Contacts, ropes, friction and breaking constraints against closed forms.
 
 use crate::systems::{FRAME, G, gravity, settings};
 use qhat::{
@@ -16,7 +16,7 @@ fn start(builder: SystemBuilder) -> Simulation {
     Simulation::new(system, state, settings).unwrap()
 }
 
-/// Runs so many seconds; every report, in order.
+/// Runs for the given number of seconds and returns all reports in order.
 fn run(simulation: &mut Simulation, seconds: f64) -> Vec<StepReport> {
     let frames = (seconds / FRAME).round() as usize;
     (0..frames).map(|frame| simulation.step().unwrap_or_else(|error| panic!("frame {frame}: {error}"))).collect()
@@ -26,7 +26,8 @@ fn events(reports: &[StepReport]) -> Vec<(f64, EventKind)> {
     reports.iter().flat_map(|report| &report.events).map(|event| (event.time, event.kind)).collect()
 }
 
-/// Dropped from a height H with restitution e, it hits at √(2H/g)(1 + 2e + 2e² + …), and rests after the sum of all.
+/// A particle that is dropped from a height H with restitution e hits the ground at √(2H/g)(1 + 2e + 2e² + …), and
+/// rests after the sum of the whole series.
 #[test]
 fn bounces_come_when_they_should() {
     let (height, e) = (1.0, 0.5);
@@ -44,7 +45,7 @@ fn bounces_come_when_they_should() {
     assert!(impacts.len() > 8, "{impacts:?}");
     let (mut expected, mut flight) = (fall, 2.0 * fall * e);
     for (k, (time, speed)) in impacts.iter().enumerate().take(8) {
-        // A gap of 1e-10 m at this speed.
+        // The impact is located to a gap of 1e-10 m, divided by the speed.
         assert!((time - expected).abs() < 1e-10 / speed, "impact {k} at {time}, expected {expected}");
         assert!((speed - G * fall * libm::pow(e, k as f64)).abs() < 1e-9, "impact {k}: {speed} m/s");
         expected += flight;
@@ -52,11 +53,11 @@ fn bounces_come_when_they_should() {
     }
     assert!(simulation.state().positions()[1].abs() < 1e-10);
     assert!(simulation.state().velocities()[1].abs() < 1e-12);
-    // All that is lost is booked.
+    // The account of energy contains all losses.
     assert!(simulation.energy_error().abs() < 1e-9, "{:e}", simulation.energy_error());
 }
 
-/// On a slope of angle a: sticks where tan a < μ; else slides with g (sin a − μ cos a).
+/// A particle on a slope of angle a sticks if tan a < μ; else it slides with the acceleration g (sin a − μ cos a).
 #[test]
 fn coulomb_on_a_slope() {
     for (angle, mu) in [(0.3, 0.4), (0.3, 0.3), (0.3, 0.1), (1.2, 2.0), (0.5, 0.546)] {
@@ -79,7 +80,7 @@ fn coulomb_on_a_slope() {
     }
 }
 
-/// Thrown along the ground it stops after v²/(2 μ g), and stays.
+/// A particle that is thrown along the ground stops after v²/(2 μ g), and stays.
 #[test]
 fn what_slides_stops() {
     let (v, mu) = (3.0, 0.4);
@@ -119,8 +120,7 @@ fn a_rope_goes_taut_and_holds() {
     assert!(simulation.energy_error().abs() < 1e-8);
 }
 
-/// Given v² < 5 g r at the bottom of a loop it leaves where v² has fallen to −g r cos: the rope goes slack at that
-/// height.
+/// With v² < 5 g r at the bottom of a loop, the rope goes slack at the height at which v² has fallen to −g r cos.
 #[test]
 fn a_rope_goes_slack_where_its_tension_ends() {
     let v2 = 3.5 * G;
@@ -145,7 +145,7 @@ fn a_rope_goes_slack_where_its_tension_ends() {
     assert!((opened.unwrap() - expected).abs() < 1e-8, "{opened:?}, expected {expected}");
 }
 
-/// A pendulum whose rod breaks at 2 mg breaks where 3 cos a = 2, and flies on.
+/// A rod that breaks at 2 m g breaks where 3 cos a = 2, and its bob flies on.
 #[test]
 fn a_rod_breaks_where_its_tension_passes_the_limit() {
     let mut builder = System::builder(Dimension::Two);
@@ -158,7 +158,7 @@ fn a_rod_breaks_where_its_tension_passes_the_limit() {
     let broke = events(&reports);
     assert_eq!(broke.len(), 1, "{broke:?}");
     assert_eq!(broke[0].1, EventKind::Broke);
-    // T = 3 m g sin of the angle fallen.
+    // T = 3 m g sin a, where a is the angle through which the bob has fallen.
     let mut whole = systems_pendulum();
     whole.advance(broke[0].0).unwrap();
     let sine = -whole.state().positions()[3];
@@ -188,7 +188,7 @@ fn integrators_without_events_say_so() {
     }
 }
 
-/// Lowest point of anything, and the energy, over a run.
+/// The lowest point of all particles, and the energy, over a run.
 fn settle(builder: SystemBuilder, seconds: f64) -> (Simulation, f64, f64) {
     let mut simulation = start(builder);
     let mut energy = simulation.energy().total();

@@ -1,4 +1,5 @@
-//! Random heaps of rods, ropes and struts dropped on the ground, a ball and a box: what holds whatever happens.
+//! Random heaps of rods, ropes and struts dropped on the ground, a ball and a box: properties that hold for every
+//! motion.
 
 use crate::systems::random::Random;
 use crate::systems::{self, FRAME, G, gravity, settings};
@@ -7,7 +8,7 @@ use qhat::{
     Workspace, step,
 };
 
-/// What particles must stay out of.
+/// The obstacles: ground, ball and box.
 fn surfaces() -> [Surface; 3] {
     [
         Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 },
@@ -88,8 +89,8 @@ fn total(report: &qhat::StepReport) -> f64 {
     report.energy.kinetic + report.energy.potential
 }
 
-/// What goes wrong in two seconds of the heap of this seed: T + V never rises, nothing sinks in, and a fresh workspace
-/// at every frame gives the same bits as one that is kept.
+/// Runs the heap of this seed for two seconds and returns the first rule that it breaks: T + V never rises, no particle
+/// sinks in, and a fresh workspace at every frame gives the same bits as a workspace that is kept.
 fn run(seed: u64) -> Result<(), String> {
     let (system, mut state) = heap(&mut Random::new(seed)).build().unwrap();
     let d = system.dimension();
@@ -97,7 +98,7 @@ fn run(seed: u64) -> Result<(), String> {
     let mut workspace = Workspace::new(&system);
     qhat::check_start(&system, &state, &settings).unwrap();
     qhat::project(&system, &mut state, &settings, &mut workspace).unwrap();
-    // All that may turn into motion: a fall of 4 m.
+    // The energy that may turn into motion: a fall of 4 m.
     let scale = 4.0 * G * system.masses().iter().sum::<f64>();
     let mut restarted = state.clone();
     let mut energy = f64::INFINITY;
@@ -120,8 +121,8 @@ fn run(seed: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// Sixty of any kind, and those that once gained energy at an edge, slipped to and fro for ever, or had no answer to
-/// friction. `make fuzz` runs more: 2 of 2400 are known to end in an error.
+/// Sixty random heaps, and the heaps that once gained energy at an edge, slipped to and fro without end, or had no
+/// solution of friction. `make fuzz` runs more heaps: 2 of 2400 are known to end in an error.
 #[test]
 fn long_heaps_never_gain_energy_nor_sink_and_repeat_to_the_bit() {
     let once_wrong = [87, 212, 281, 460, 492, 607, 610, 612, 682, 932, 1006, 1165, 1270, 1280, 2158];

@@ -1,4 +1,4 @@
-//! Where the force of a contact has no answer, or jumps: friction that presses its own contact, and edges.
+//! Contacts whose force does not exist or jumps: friction that presses its own contact together, and edges.
 
 use crate::systems::{FRAME, G, gravity, settings};
 use qhat::{Dimension, Distance, Integrator, Obstacle, Particle, Settings, Simulation, Surface, System, SystemBuilder};
@@ -10,14 +10,14 @@ fn start(builder: SystemBuilder) -> Simulation {
 }
 
 /// A rod pushed over rough ground with its lower end in front, as chalk over a board. Friction turns the rod so that it
-/// presses on the ground: by more than the ground can push it back where
+/// presses on the ground. The ground cannot push it back if
 ///
 /// ```text
 /// 1 − k sin² a − μ k sin a cos a < 0,   k = m₂/(m₁ + m₂)
 /// ```
 ///
-/// No force answers. The lower end stops at once, and takes the motion along the rod with it: m₁ v²/2 + m₂ (v cos
-/// a)²/2.
+/// No finite force solves the equations. The lower end stops at once, and the motion along the rod is lost: the energy
+/// m₁ v²/2 + m₂ (v cos a)²/2.
 #[test]
 fn friction_without_an_answer_stops_the_slip_at_once() {
     let (lower, upper, speed, angle) = (1.0, 10.0, 1.0, std::f64::consts::FRAC_PI_3);
@@ -47,7 +47,7 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
                 let slip = simulation.state().velocities()[0];
                 assert!(slip.abs() < 1e-12, "{dimension:?}: {slip} m/s");
             } else {
-                // It slips on, slowed by a force.
+                // The end slips on and is slowed by a finite force.
                 assert!(simulation.state().velocities()[0] < -0.5 * speed, "{dimension:?}");
             }
             for _ in 0..60 {
@@ -58,7 +58,7 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
     }
 }
 
-/// What slides fast over the edge of a box leaves it where the edge begins to be round, and falls.
+/// A particle that slides fast over the edge of a box leaves the box where the edge begins to be round, and falls.
 #[test]
 fn what_slides_over_an_edge_falls_from_there() {
     for dimension in [Dimension::Two, Dimension::Three] {
@@ -81,7 +81,7 @@ fn what_slides_over_an_edge_falls_from_there() {
             let fall = simulation.state().time() - 2.0 * way / (speed + after);
             let q = simulation.state().positions();
             let (x, y) = (1.0 - radius + after * fall, 0.5 - 0.5 * G * fall * fall);
-            // The edge is found to 1e-13 of a frame; a billionth allows for the tolerance of the method.
+            // The edge is located to 1e-13 of a frame; 1e-9 allows for the tolerance of the method.
             assert!(
                 (q[0] - x).abs() < 1e-9 && (q[1] - y).abs() < 1e-9,
                 "{dimension:?} {friction}: {q:?}, expected {x} {y}"

@@ -1,5 +1,5 @@
-//! Constraints and potentials that a user writes in Rust, against the same as expressions and against forces of the
-//! engine.
+//! Constraints and potentials that a user writes in Rust: compared with the same formulas as expressions and with
+//! forces of the engine.
 
 use qhat::{
     BuildError, Constraint, Custom, CustomConstraint, CustomForce, Dimension, Expression, ExpressionConstraint,
@@ -22,7 +22,7 @@ impl CustomConstraint for Spiral {
 
 const SPIRAL: &str = "0.1*(bead.x*sin(length(bead)/0.1) - bead.y*cos(length(bead)/0.1))/length(bead)";
 
-/// Where the spiral r = 0.1 θ is at θ = 20.
+/// The point of the spiral r = 0.1 θ at θ = 20.
 fn on_spiral() -> [f64; 2] {
     [2.0 * 20.0_f64.cos(), 2.0 * 20.0_f64.sin()]
 }
@@ -48,7 +48,7 @@ fn settings(integrator: Integrator) -> Settings {
     Settings { integrator, tolerance: 1e-8, ..Settings::default() }
 }
 
-/// A bead on a spiral, and a bob on a rod from it whose length is driven.
+/// A bead on a spiral, and a bob at the end of a rod that begins at the bead and whose length is driven.
 fn spiral(spiral: Constraint, rod: Constraint) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let [x, y] = on_spiral();
@@ -71,7 +71,7 @@ fn typed() -> (System, State) {
     spiral(same_as(SPIRAL, &at), same_as("dist(bob, bead) - 1 - 0.1*sin(2*t)", &at))
 }
 
-/// Where everything is after a number of frames of 10 ms.
+/// All positions after a number of frames of 10 ms.
 fn run((system, state): (System, State), integrator: Integrator, frames: usize) -> (Vec<f64>, Simulation) {
     let mut simulation = Simulation::new(system, state, settings(integrator)).unwrap();
     for _ in 0..frames {
@@ -87,8 +87,8 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
 #[test]
 fn a_custom_constraint_moves_as_the_same_expression() {
     // The derivatives agree to roundoff. Each method solves to its own tolerance, and rattle and implicit stop their
-    // iterations where the residual is below it: their difference is the difference in scale of the rows, hence not
-    // roundoff alone.
+    // iterations when the residual is below it. The scales of the rows differ, so the results differ by more than
+    // roundoff.
     for (integrator, good) in [(Integrator::Dop853, 1e-12), (Integrator::Rattle, 1e-12), (Integrator::Implicit, 1e-12)]
     {
         let (own, simulation) = run(custom(), integrator, 300);
@@ -136,7 +136,7 @@ fn a_custom_potential_moves_as_a_spring_does() {
     }
 }
 
-/// Who changes V with time gives or takes energy: the account must balance.
+/// A potential that changes with time adds or takes energy; the account of energy contains it.
 #[test]
 fn a_custom_potential_may_depend_on_time() {
     let driven = |x: &[[Hyper; 3]], t: Hyper| 8.0 * (x[0][0] - 0.3 * (4.0 * t).sin()).powi(2) + x[1][0].cos() * x[0][1];
@@ -153,7 +153,8 @@ fn a_custom_potential_may_depend_on_time() {
     assert!(work[0].abs() > 1e-3 && (work[0] - work[1]).abs() < 1e-9, "{work:?}");
 }
 
-/// A bead on y = 0 whose residual or one of its derivatives goes wrong at x > 1, where it arrives after a second.
+/// A bead on y = 0. Its residual or a derivative of the residual is not finite at x > 1, where the bead arrives after a
+/// second.
 fn gone_wrong(residual: fn(Hyper, Hyper) -> Hyper, integrator: Integrator) -> Result<(), StepError> {
     let mut builder = System::builder(Dimension::Two);
     let bead = builder.particle(Particle::at("bead", [0.0, 0.0]).with_velocity([1.0, 0.0]));
@@ -187,7 +188,7 @@ fn a_residual_that_goes_wrong_ends_the_step_in_an_error() {
     }
 }
 
-/// A residual that has no value at the start is refused there.
+/// A residual that has no value at the start is refused before the run.
 #[test]
 fn a_residual_without_a_value_at_the_start_is_refused() {
     for integrator in [Integrator::Auto, Integrator::Rattle, Integrator::Implicit, Integrator::Rk4] {
@@ -232,11 +233,11 @@ fn clones_are_equal_and_others_are_not() {
     let (one, other) = (CustomForce::new([bead()], y), CustomForce::new([bead()], y));
     assert_eq!(one, one.clone());
     assert_ne!(one, other);
-    // Neither has numbers to show but its particles.
+    // The debug form of both shows the particles only.
     assert_eq!(format!("{one:?}"), "CustomForce { particles: [ParticleId(0)], .. }");
 }
 
-/// Threads share what a user wrote, and step it to the same bits.
+/// Threads share the functions of a user and compute the same bits.
 #[test]
 fn threads_step_custom_constraints_to_the_same_bits() {
     let (system, state) = custom();
@@ -251,7 +252,7 @@ fn threads_step_custom_constraints_to_the_same_bits() {
     }
 }
 
-/// A factor before C changes nothing but roundoff, where the scale has the same factor.
+/// A factor before C changes only roundoff if the scale has the same factor.
 #[test]
 fn a_scale_has_the_unit_of_its_residual() {
     let thousandfold = |x: &[[Hyper; 3]], t: Hyper| 1000.0 * Spiral { a: 0.1 }.residual(x, t);

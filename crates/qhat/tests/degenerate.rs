@@ -1,5 +1,5 @@
-//! Degenerate systems: a status or a typed error, never a panic, and never silent nonsense. What users may get wrong in
-//! numbers and names is in `refused.rs`.
+//! Degenerate systems end in a status or a typed error, never in a panic or in wrong numbers without a warning. Wrong
+//! numbers and names are in `refused.rs`.
 
 use crate::systems;
 use crate::systems::dense::{assert_close, largest, norm};
@@ -16,7 +16,7 @@ fn settings(integrator: Integrator) -> Settings {
     systems::settings(integrator, 1.0 / 240.0)
 }
 
-/// Steps under every integrator and returns the simulation where all went well.
+/// Steps under every integrator and returns the simulation if no step failed.
 fn run_all(system: &System, state: &State, steps: usize) -> Vec<Simulation> {
     let start = |integrator| Simulation::new(system.clone(), state.clone(), settings(integrator)).unwrap();
     let run = |mut simulation: Simulation| {
@@ -49,7 +49,7 @@ fn no_constraints() {
     builder.force(systems::gravity());
     let (system, state) = builder.build().unwrap();
     for simulation in run_all(&system, &state, 240) {
-        // Falls 4.9 m in a second; the Eulers are off by half a step's worth.
+        // The particle falls 4.9 m in a second; the error of the Euler methods is half of h v.
         assert_close("y", simulation.state().positions()[1], 2.0 - 0.5 * systems::G, 0.021);
     }
 }
@@ -72,7 +72,7 @@ fn both_ends_fixed() {
     }
 }
 
-/// Fixed ends whose distance is wrong can never be put right: the row is named, its C is reported.
+/// A rod between fixed ends at a wrong distance cannot be projected: the error names the row and its C.
 #[test]
 fn both_ends_fixed_at_the_wrong_distance() {
     let mut builder = plane();
@@ -102,17 +102,18 @@ fn infeasible_rows_are_named() {
     assert!(*time == 0.0 && residual.abs() > 0.05 && residual.abs() < 0.2, "{residual}");
     assert!(error.to_string().contains(row.as_str()), "{error}");
 
-    // A step from there says so, too, and leaves the state.
+    // A step from there gives the same error and leaves the state.
     let mut stepped = state;
     let mut workspace = Workspace::new(&system);
     let error = step(&system, &mut stepped, &settings(Integrator::Rattle), &mut workspace).unwrap_err();
     assert!(matches!(error, StepError::NotSatisfied { .. }), "{error:?}");
     assert_eq!(stepped.positions(), before.positions());
-    // The others compute on, with a finite λ that is the least of those that come nearest.
+    // The other integrators continue with a finite λ: the least of all λ with the smallest residual.
     assert!(largest(&evaluate(&system, &before).multipliers) < 1e3);
 }
 
-/// Redundant rows are reported and carry: λ is the least, shared alike, and the motion as if there were one.
+/// Redundant rows are reported and carry load: λ has the least norm, equal rows have equal λ, and the motion is the
+/// same as with one row.
 #[test]
 fn redundant_rows_share_the_load() {
     let (single, start) = systems::pendulum(0.5);
@@ -136,11 +137,11 @@ fn redundant_rows_share_the_load() {
             reference.step().unwrap();
         }
         let (a, b) = (simulation.state().positions()[2], reference.state().positions()[2]);
-        // Roundoff of a second's motion; an implicit step is solved to 1e-10 only, and what is missing is carried on as
+        // Roundoff of a second's motion. An implicit step is solved to 1e-10 only, and its residual remains in the
         // velocity.
         let allowed = if integrator.is_implicit() { 1e-8 } else { 1e-9 };
         assert_close(&format!("x under {integrator}"), a, b, allowed);
-        // A method that solves at the end of the step forms no A; whoever asks for the terms is told.
+        // An implicit method forms no A. The warning comes with the terms.
         let report = simulation.step().unwrap();
         let warnings = if integrator.is_implicit() { simulation.terms().warnings } else { report.warnings };
         assert!(warnings.contains(&Warning::Singular), "{integrator}");
@@ -160,7 +161,7 @@ fn coincident_particles() {
         assert!(terms.multipliers.iter().chain(&terms.accelerations).all(|x| x.is_finite()));
         let simulation = Simulation::new(system, state, settings(Integrator::Rattle));
         match form {
-            // A direction is chosen, so that the ends can be pulled apart.
+            // The length form takes the first axis, so that the ends can be pulled apart.
             DistanceForm::Length => {
                 let simulation = simulation.unwrap();
                 let x = simulation.state().positions();
@@ -175,7 +176,8 @@ fn coincident_particles() {
     }
 }
 
-/// The source's nail at the very point it holds: without diagonal drag no λ can act, which is said and survived.
+/// The scalar nail of the source with its particle exactly at its point: without diagonal drag no λ can act. The step
+/// warns and does not fail.
 #[test]
 fn scalar_nail_without_diagonal_drag() {
     let mut builder = plane();
@@ -190,7 +192,7 @@ fn scalar_nail_without_diagonal_drag() {
     assert_eq!(terms.accelerations, [0.0, -systems::G], "it falls as if there were no nail");
     assert!(warning.to_string().contains("nail") && warning.to_string().contains("diagonal drag"));
 
-    // With diagonal drag there is a factor and no complaint; λ is still zero where C, Ċ and J are.
+    // With diagonal drag A can be factored and no warning is given; λ is still zero where C, Ċ and J are zero.
     let mut simulation = Simulation::new(system.clone(), state.clone(), settings(Integrator::Euler)).unwrap();
     simulation.set_feedback(Feedback { diagonal_drag: 0.1, ..systems::critical(10.0) }).unwrap();
     assert_eq!(simulation.terms().warnings, []);
@@ -199,12 +201,12 @@ fn scalar_nail_without_diagonal_drag() {
     }
     let held = simulation.state().positions()[1];
     assert!(held > 0.0, "held softly near 0.5, but fell to {held}");
-    // The vector nail needs none of it.
+    // The vector nail needs no diagonal drag.
     let modern = system.with_formulation(Formulation::Modern);
     assert_eq!(evaluate(&modern, &state).accelerations, [0.0, 0.0]);
 }
 
-/// A load of a billion beads: badly scaled is not singular, and λ must carry the load, not let it fall.
+/// A load of a billion beads: a badly scaled A is not singular, and λ must carry the load.
 #[test]
 fn masses_a_billion_apart() {
     for (links, ratio) in [(2, 1e9), (20, 1e7), (20, 1e8), (20, 1e9), (100, 1e9)] {
@@ -222,13 +224,15 @@ fn masses_a_billion_apart() {
         assert_eq!((terms.rank, terms.warnings), (Some(links), vec![]));
         let weight = 1e-2 * ratio * systems::G;
         for tension in terms.tension {
-            // Pivots are 1/ratio of the diagonal: λ keeps what is left of 1e-16 times the ratio, with a digit to spare.
+            // Pivots are 1/ratio of the diagonal: the relative error of λ is 1e-16 times the ratio; a factor of ten is
+            // added.
             assert_close("tension", tension, weight, (2e-15 * ratio + 1.5 * links as f64 / ratio) * weight);
         }
     }
 }
 
-/// The heavier the load, the shorter the substeps (ω grows with its root); but they arrive, and the links hold.
+/// The heavier the load, the shorter the substeps (ω grows with the root of the load). The frames are completed, and
+/// the links hold.
 #[test]
 fn a_heavy_load_can_be_carried() {
     let (system, state) = systems::chain(20, 1e7);
@@ -239,7 +243,7 @@ fn a_heavy_load_can_be_carried() {
     }
 }
 
-/// A parallelogram linkage loses rank where it passes through flat; the motion must carry through.
+/// A parallelogram linkage loses rank where all its bars are in line; the motion must pass through this position.
 #[test]
 fn parallelogram_passes_through_flat() {
     let mut builder = plane();

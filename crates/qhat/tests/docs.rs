@@ -1,4 +1,4 @@
-//! The documents say what the code does: the notation table, the paths they name, the links they make.
+//! The documents agree with the code: the notation table, the paths that they name, and their links.
 
 use qhat::NOTATION;
 use std::fs;
@@ -49,7 +49,7 @@ fn terms_has_the_fields_of_the_notation_table_in_its_order() {
     let fields: Vec<&str> =
         body.lines().filter_map(|line| line.trim().strip_prefix("pub ")?.split(':').next()).collect();
     let mut words: Vec<&str> = NOTATION.iter().map(|n| n.word).collect();
-    words.push("warnings"); // words for a person, not a symbol
+    words.push("warnings"); // text, so the table of symbols does not have it
     assert_eq!(fields, words);
 }
 
@@ -64,7 +64,7 @@ fn letters_of_the_notation_table_stand_in_their_files() {
 
 #[test]
 fn every_path_named_in_a_document_exists() {
-    // Built or made on demand, so not in a fresh clone.
+    // Built or written on demand, so not in a fresh clone.
     let made = ["target/", "playground/dist", "playground/node_modules"];
     let mut named = 0;
     for document in documents() {

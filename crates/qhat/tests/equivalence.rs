@@ -30,8 +30,8 @@ fn reference(terms: &Terms) -> (Vec<f64>, usize) {
     (lambda, rank)
 }
 
-/// The yardstick itself: the matrix (−1, 2, −1) of n rows has the eigenvalues 2 − 2 cos(kπ/(n + 1)), and every vector
-/// that belongs to one is orthogonal to all others.
+/// The reference itself: the matrix (−1, 2, −1) of n rows has the eigenvalues 2 − 2 cos(kπ/(n + 1)), and every
+/// eigenvector is orthogonal to all others.
 #[test]
 fn the_reference_finds_known_eigenvalues() {
     let n = 60_usize;
@@ -68,7 +68,8 @@ fn check(name: &str, system: &System, state: &State) {
     let terms = evaluate(system, state);
     let (lambda, rank) = reference(&terms);
     let qdd = accelerations(system, &terms, &lambda);
-    // The eigenvalue decomposition keeps about 1e-14 of A's norm; chains and trusses multiply that by 1e2 to 1e3.
+    // The error of the eigenvalue decomposition is about 1e-14 of the norm of A; chains and trusses multiply it by 1e2
+    // to 1e3.
     let scale = largest(&qdd).max(largest(&terms.right_hand_side)).max(1.0);
     assert_all_close(&format!("{name}: q̈"), &terms.accelerations, &qdd, 1e-10 * scale);
     let size = largest(&lambda).max(1e-3);
@@ -96,8 +97,8 @@ fn star(arms: usize) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// Two free hubs with many rods each, to particles that they share, that are held by rods to the ground or nailed, that
-/// have a second rod to the hub (`redundant`), to each other and to what is fixed.
+/// Two free hubs with many rods each: to shared particles, to particles that a rod or a nail holds, to particles with a
+/// second rod to the hub (`redundant`), to each other and to fixed particles.
 fn hubs(d: usize, redundant: bool) -> (System, State) {
     let mut builder = System::builder(systems::random::dimension(d));
     let mut random = Random::new(7 + d as u64);
@@ -145,7 +146,7 @@ fn difference_of(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// Hubs keep unknowns of their own; λ, the rank and what is said of it are those of A.
+/// Hubs have unknowns of their own; λ, the rank and the warnings are the same as for A.
 #[test]
 fn long_hubs_change_nothing() {
     for d in [2, 3] {
@@ -156,7 +157,8 @@ fn long_hubs_change_nothing() {
     }
 }
 
-/// The same at velocities that are not zero, so that γ takes part, and legal, so that redundant rows agree about C̈.
+/// The same system with velocities that are not zero, so that γ is not zero, and meet Ċ = 0, so that redundant rows
+/// agree about C̈.
 fn moving(random: &mut Random, (system, state): (System, State)) -> (System, State) {
     let d = system.dimension();
     let v = (0..state.velocities().len()).map(|k| {
@@ -189,7 +191,7 @@ fn multipliers_equal_the_dense_reference() {
     }
 }
 
-/// Redundant rows: q̈ is that of the pseudo-inverse to 1e-10, λ the least in rows scaled by √A_ii to 1e-8.
+/// Redundant rows: q̈ agrees with the pseudo-inverse to 1e-10, and λ to 1e-8 with the least λ in rows scaled by √A_ii.
 #[test]
 fn redundant_systems_equal_the_pseudo_inverse() {
     let mut random = Random::new(10);
@@ -209,7 +211,7 @@ fn redundant_systems_equal_the_pseudo_inverse() {
     }
 }
 
-/// Rows that contradict each other about C̈: the q̈ that comes nearest, and the least λ for it.
+/// Rows that contradict each other about C̈: the q̈ with the smallest residual, and the least λ for this q̈.
 #[test]
 fn contradicting_rows_come_as_near_as_they_can() {
     let mut random = Random::new(14);
@@ -219,13 +221,13 @@ fn contradicting_rows_come_as_near_as_they_can() {
         let (lambda, rank) = reference(&terms);
         assert_eq!((terms.rank, rank), (Some(system.row_count() - 1), system.row_count() - 1));
         let qdd = accelerations(&system, &terms, &lambda);
-        // What contradicts is taken out of b first; 1e-16 of it remains and is divided by δ = 1e-8 in λ.
+        // The contradiction is removed from b first; 1e-16 of it remains and is divided by δ = 1e-8 in λ.
         assert_all_close("q̈", &terms.accelerations, &qdd, 1e-7 * largest(&qdd));
         assert_all_close("λ", &terms.multipliers, &lambda, 1e-6 * largest(&lambda));
     }
 }
 
-/// How to number everything anew: particle `particles[i]` comes i-th.
+/// A new numbering: particle `particles[i]` comes i-th.
 struct Numbering {
     particles: Vec<usize>,
     constraints: Vec<NamedConstraint>,
@@ -237,7 +239,7 @@ impl Numbering {
     }
 }
 
-/// The same system, numbered anew.
+/// The same system in the new numbering.
 fn rebuilt(system: &System, state: &State, numbering: &Numbering) -> (System, State) {
     let d = system.dimension();
     let new = |old: ParticleId| systems::id(numbering.particles.iter().position(|&i| i == old.index()).unwrap());
@@ -319,12 +321,12 @@ fn renumbering_changes_no_motion() {
         let (a, b) = (a.state().positions(), b.state().positions());
         let place = |i: usize| numbering.particles.iter().position(|&p| p == i).unwrap();
         let back: Vec<f64> = (0..16).flat_map(|i| b[place(i) * 3..][..3].to_vec()).collect();
-        // Newton stops at half of 1e-10, wherever it comes from; roundoff alone would leave 1e-13.
+        // Newton stops at half of 1e-10 in either numbering; roundoff alone would leave 1e-13.
         assert!(difference(a, &back) < 1e-8, "{integrator}: off by {:e}", difference(a, &back));
     }
 }
 
-/// Several small systems side by side are factored sparsely where each alone is dense: the same numbers.
+/// Several small systems side by side are factored sparsely, and each of them alone densely: the same numbers.
 #[test]
 fn sparse_equals_dense() {
     let (system, state) = systems::truss(4, false);

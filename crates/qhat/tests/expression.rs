@@ -1,4 +1,4 @@
-//! The expression language: what texts mean, what is refused and in which words, and that no text does harm.
+//! The expression language: the meaning of texts, the messages for texts that are refused, and that no text does harm.
 
 use crate::systems::{self, random::dimension};
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ fn parse_in(text: &str, purpose: Purpose, dimension: Dimension) -> Result<Expres
         "both" => Some(1.0),
         _ => None,
     };
-    // Enough of a suggestion to see that it is asked: the name that the given one begins.
+    // A simple suggestion, to see that it is asked for: the first known name that begins with the given name.
     let suggest = |given: &str, more: &[&'static str]| {
         let known = names.iter().chain(["k", "length0"].iter()).chain(more);
         let beginning = given.get(..given.len() - 1).filter(|beginning| !beginning.is_empty())?;
@@ -186,8 +186,7 @@ fn a_function_of_time_has_rate_and_second_derivative() {
     assert_eq!((same, C_t), (jet, jet.first));
 }
 
-/// At the kinks the derivative is that of one branch, and at the edges of domains it is infinite: nothing else is made
-/// up.
+/// At a kink the derivative is the derivative of one branch, and at the edge of a domain it is infinite.
 #[test]
 fn kinks_take_a_branch_and_edges_are_infinite() {
     let slope = |text: &str, x: f64| {
@@ -207,14 +206,14 @@ fn kinks_take_a_branch_and_edges_are_infinite() {
     assert_eq!(slope("acos(a.x)", 1.0), f64::NEG_INFINITY);
     assert_eq!(slope("asin(a.x)", -1.0), f64::INFINITY);
     assert!(slope("ln(a.x)", -1.0).is_finite() && parse("ln(a.x)").unwrap().value(&[-1.0], &[], 0.0).is_nan());
-    // Powers at base 0: the derivatives that exist are right.
+    // Powers at base 0: the derivatives that exist are correct.
     assert_eq!(slope("a.x^1", 0.0), 1.0);
     assert_eq!(slope("a.x^2", 0.0), 0.0);
     assert_eq!(slope("a.x^1.5", 0.0), 0.0);
     assert_eq!(slope("a.x^(1 + k + t)", 0.0), 0.0);
     // The branch that is not taken may be infinite.
     assert_eq!(slope("max(a.x, sqrt(a.x) - 1)", 0.0), 1.0);
-    // What is not a number stays so.
+    // NaN stays NaN.
     for text in ["min(ln(a.x), 1)", "min(1, ln(a.x))", "max(ln(a.x), 1)", "max(1, ln(a.x))"] {
         assert!(parse(text).unwrap().value(&[-1.0], &[], 0.0).is_nan(), "{text}");
     }
@@ -237,7 +236,7 @@ fn equal_parts_are_there_once_and_constants_are_folded() {
         ("2*3 + k", 1),
         ("sin(a.x)*sin(a.x)", 3),
         ("a.x*a.y - a.y*a.x", 4),
-        // Four coordinates, two differences, two squares, sum, root, the length and what is left.
+        // Four coordinates, two differences, two squares, sum, root, the length and the last difference.
         ("dist(a, b) - 1", 13),
         ("a.x^8", 4),
         ("dot(a, [1, 0])", 7),
@@ -245,7 +244,7 @@ fn equal_parts_are_there_once_and_constants_are_folded() {
         let found = parse(text).unwrap().instruction_count();
         assert!(found <= count, "{text}: {found} instructions");
     }
-    // Only what is used: c's y is not.
+    // Only coordinates that are used: the y of c is not used.
     let parsed = parse("c.x + a.y").unwrap();
     assert_eq!(parsed.particles(), [crate::systems::id(2), crate::systems::id(0)]);
     let mut J = [f64::NAN; 4];
@@ -262,7 +261,7 @@ fn an_expression_gives_its_text_back_and_compares_by_content() {
     assert_ne!(parsed, parse("dist(a, b) - 2").unwrap());
 }
 
-/// Text, the part that is marked, what is said, and what to write instead.
+/// A text, the part that is marked, the message, and the text to write instead.
 const REFUSED: [(&str, &str, &str, &str); 47] = [
     ("", "", "the expression is empty", "write `0` for nothing"),
     ("a.x +", "+", "the expression ends after `+`", "a number, a name or a bracket must follow"),
@@ -440,7 +439,7 @@ fn parameters_may_not_take_names_that_have_a_meaning() {
     }
 }
 
-/// What is too much is refused before it is worked on; what just fits is not.
+/// Texts above a limit are refused before they are evaluated; texts at the limit are accepted.
 #[test]
 fn limits_hold() {
     let message = |text: &str| parse(text).unwrap_err().message;
@@ -460,7 +459,7 @@ fn limits_hold() {
         assert_eq!(message(&deep), format!("brackets, signs and powers are nested more than {MAX_DEPTH} deep"));
     }
     assert!(parse(&format!("{}1", "-".repeat(MAX_DEPTH))).is_ok());
-    // Side by side is not nested.
+    // Brackets side by side are not nested.
     assert!(parse(&vec!["(-(1))"; 100].join("+")).is_ok());
     assert!(parse(&vec!["-a.x^2^2"; 60].join("*")).is_ok());
 
@@ -497,7 +496,7 @@ fn limits_hold() {
 fn the_deepest_text_fits_a_small_stack() {
     let deepest = [
         format!("{}1{}", "(".repeat(MAX_DEPTH), ")".repeat(MAX_DEPTH)),
-        // A summand and a factor more for every bracket.
+        // A further summand and factor for every bracket.
         format!("{}1{}", "1+2*(".repeat(MAX_DEPTH), ")".repeat(MAX_DEPTH)),
         format!("{}1{}", "1+2*abs(".repeat(MAX_DEPTH), ")".repeat(MAX_DEPTH)),
         format!("{}1", "2^-".repeat(MAX_DEPTH / 2)),
@@ -507,7 +506,7 @@ fn the_deepest_text_fits_a_small_stack() {
     assert_eq!(parsed.join().unwrap(), [true; 4]);
 }
 
-/// The marked part is always text, whatever the text is.
+/// The marked part of a message is a valid slice of any text.
 fn assert_harmless(text: &str) {
     for (purpose, d) in [(Purpose::Constraint, 2), (Purpose::Force, 3)] {
         match parse_in(text, purpose, dimension(d)) {
@@ -574,7 +573,7 @@ proptest! {
         assert_harmless(&String::from_utf8_lossy(&bytes));
     }
 
-    /// Pieces of the language in any order: most are no expressions, and come further than random letters.
+    /// Pieces of the language in random order. Most are no expressions, but they come further than random letters.
     #[test]
     fn random_tokens_do_no_harm(pieces in proptest::collection::vec(proptest::sample::select(PIECES.to_vec()), 0..60)) {
         assert_harmless(&pieces.concat());

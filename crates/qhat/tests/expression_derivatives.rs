@@ -1,5 +1,5 @@
-//! Ten thousand random expressions: what they mean against a second evaluator over the tree they were printed from, and
-//! their derivatives against differences of that evaluator.
+//! Ten thousand random expressions: their values against a second evaluator, which works on the tree that an expression
+//! was printed from, and their derivatives against differences of this evaluator.
 
 use crate::systems::random::{Random, dimension};
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ use proptest::test_runner::{TestRng, TestRunner};
 use qhat::{Expression, Purpose, Scope};
 use std::cell::Cell;
 
-/// A number.
+/// An expression that is a number.
 #[derive(Clone, Debug)]
 enum Number {
     Constant(f64),
@@ -25,7 +25,7 @@ enum Number {
     CrossComponent(usize, Point, Point),
 }
 
-/// A point.
+/// An expression that is a point.
 #[derive(Clone, Debug)]
 enum Point {
     Particle(usize),
@@ -39,7 +39,7 @@ const NAMES: [&str; 3] = ["a", "bob", "c1"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 const PARAMETER: f64 = 0.75;
 
-/// Where an expression is evaluated.
+/// The arguments of an evaluation.
 #[derive(Clone)]
 struct At {
     d: usize,
@@ -78,7 +78,7 @@ impl Number {
         }
     }
 
-    /// Its value, and `None` where it cannot be differentiated by differences. Looks at nothing but the tree.
+    /// The value, and `None` where differences cannot give the derivative. It is computed from the tree alone.
     fn value(&self, at: &At, strict: bool) -> Option<f64> {
         let allowed = |fine: bool| (fine || !strict).then_some(());
         let value = match self {
@@ -279,8 +279,8 @@ fn number() -> impl Strategy<Value = Number> {
     })
 }
 
-/// Central differences of order `order` at shrinking steps, extrapolated to zero (Ridders 1982): the derivative and
-/// what it may be wrong by.
+/// Central differences of order `order` at shrinking steps, extrapolated to zero (Ridders 1982): the derivative and its
+/// error estimate.
 fn ridders(order: i32, f: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     const LEVELS: usize = 7;
     let mut table = [[0.0; LEVELS]; LEVELS];
@@ -304,10 +304,10 @@ fn ridders(order: i32, f: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     Some(best)
 }
 
-/// What differences of numbers of size s resolve: at the smallest h of 0.005 a second difference of numbers known to
+/// Resolution of differences of numbers of size s: at the smallest h of 0.005 a second difference of numbers known to
 /// 1e-15 s is known to 1e-15 s/h² = 4e-11 s, a few hundred times that after extrapolation.
 const RESOLVED: f64 = 1e-7;
-/// Twenty times what is resolved; a term that is missing is as large as the derivative.
+/// The tolerance is twenty times the resolution; a missing term would be as large as the derivative.
 const TOLERANCE: f64 = 2e-6;
 
 #[derive(Default)]
@@ -317,7 +317,7 @@ struct Count {
 }
 
 impl Count {
-    /// Compares one derivative with differences where these converge; whether they do is known without the derivative.
+    /// Compares one derivative with differences if these converge; the test of convergence does not use the derivative.
     fn check(&self, what: &str, text: &str, is: f64, size: f64, differences: Option<(f64, f64)>) {
         let scale = |value: f64| 1.0 + size + value.abs();
         match differences {
@@ -333,7 +333,7 @@ impl Count {
     }
 }
 
-/// The same bits, or neither a number: the sign of nan is not defined.
+/// The same bits, or both NaN: the sign of a NaN is not defined.
 fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
@@ -349,7 +349,7 @@ fn parse(text: &str, d: usize) -> Result<Expression, qhat::ExpressionError> {
     Expression::parse(text, &scope)
 }
 
-/// Trees looked at. Some have a constant part that is infinite and are refused, some are near a kink and not compared.
+/// Number of trees. Some have an infinite constant part and are refused; some are near a kink and are not compared.
 const TREES: u32 = 10_000;
 
 #[test]
@@ -369,7 +369,7 @@ fn long_ten_thousand_random_expressions_and_their_derivatives() {
         };
         let text = tree.print(d);
         let Ok(parsed) = parse(&text, d) else {
-            // A constant part that is not finite is all that is wrong with a tree.
+            // A constant part that is not finite is the only reason for which a tree is refused.
             prop_assert_eq!(parse(&text, d).unwrap_err().message, "this is never a finite number");
             return Ok(());
         };
@@ -390,7 +390,7 @@ fn long_ten_thousand_random_expressions_and_their_derivatives() {
             kinks.set(kinks.get() + 1);
             return Ok(());
         };
-        // The same up to the order of a few dozen roundings, magnified by at most SIZE.
+        // The same up to a few dozen roundings, magnified by at most SIZE.
         prop_assert!((value - expected).abs() <= 1e-10 * (1.0 + expected.abs()), "{}: {} {}", text, value, expected);
 
         let f = |q: Vec<f64>, qd: Vec<f64>, t: f64| tree.value(&At { d, q, qd, t }, true);
@@ -433,7 +433,7 @@ fn long_ten_thousand_random_expressions_and_their_derivatives() {
         parsed_count.get(),
         kinks.get()
     );
-    // Trees are the same in every run, so are these shares; they would drop if what is skipped hid what is wrong.
+    // Trees and therefore these shares are the same in every run. The shares would drop if errors were skipped.
     assert!(parsed_count.get() > 9_000);
     assert!(compared > 60_000 && unresolved * 20 < compared);
 }

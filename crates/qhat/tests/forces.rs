@@ -19,7 +19,7 @@ fn build(random: &mut Random, d: usize, force: Force) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// V at other positions, through the public door.
+/// V at other positions, through the public interface.
 fn potential(system: &System, state: &State, q: Vec<f64>) -> f64 {
     let state = state.with_motion(q, state.velocities().to_vec());
     let settings = systems::settings(Integrator::Euler, 0.01);
@@ -33,7 +33,8 @@ fn slope(system: &System, state: &State, v: &[f64]) -> f64 {
     (8.0 * (at(DELTA) - at(-DELTA)) - (at(2.0 * DELTA) - at(-2.0 * DELTA))) / (12.0 * DELTA)
 }
 
-/// Power of what no potential accounts for, as the energy account books it: over a step so short that nothing changes.
+/// Power of the forces without a potential, from the account of energy over a step so short that the motion hardly
+/// changes.
 fn booked_power(system: &System, state: &State) -> f64 {
     const H: f64 = 1e-10;
     let mut after = state.clone();
@@ -110,7 +111,7 @@ fn springs_damp_their_own_stretching() {
     check(|_| spring(1.7), &|i, x, v, _| spring_force(i, x, v, 1.7), true);
 }
 
-/// A spring that shrinks pushes outward by its damper: the slip of the source would add energy here.
+/// The damper of a spring that shrinks pushes outward; the wrong sign of the source would add energy here.
 #[test]
 fn spring_damping_opposes_the_stretch_rate() {
     let mut builder = System::builder(dimension(2));
@@ -118,7 +119,7 @@ fn spring_damping_opposes_the_stretch_rate() {
     let b = builder.particle(Particle::at("b", [0.0, 0.0]));
     builder.force(Spring { a, b, stiffness: 10.0, damping: 3.0, rest: 1.0 });
     let (system, state) = builder.build().unwrap();
-    // At rest length only the damper acts: −kd L̇ = −3 · 2 N along x, and nothing of the 5 m/s across.
+    // At rest length only the damper acts: −kd L̇ = −3 · 2 N along x; the 5 m/s across have no effect.
     assert_eq!(evaluate(&system, &state).applied_forces, [-6.0, 0.0, 6.0, 0.0]);
 }
 

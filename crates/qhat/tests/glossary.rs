@@ -1,4 +1,4 @@
-//! Every word of `docs/glossary.md` stands in the file that the glossary names for it.
+//! Every word of `docs/glossary.md` occurs in the file that the glossary names for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,7 @@ fn every_word_of_the_glossary_stands_in_its_file() {
     assert!(rows.len() >= 40, "the search for words found only {}", rows.len());
     let mut wrong = Vec::new();
     for [term, _, file, sentence] in &rows {
-        // What stands in brackets is another word for the same.
+        // The text in brackets is another word for the same term.
         let term = term.split(" (").next().unwrap();
         let path = file.trim_matches('`');
         match fs::read_to_string(root().join(path)) {

@@ -1,4 +1,4 @@
-//! What must hold between the symbols of one evaluation, whatever the system: W, A, b, λ, Q̂ and q̈ against the dense
+//! Identities between the symbols of one evaluation, for every system: W, A, b, λ, Q̂ and q̈ against the dense
 //! equations, the feedback C̈ + kd Ċ + ks C = 0, and the two menus of the source, diagonal drag and elasticity.
 //! Work, momentum and signs are in `reactions.rs`.
 
@@ -14,12 +14,12 @@ fn webs() -> Vec<(System, State)> {
     [2, 3].into_iter().flat_map(|d| sizes.map(|n| (d, n))).map(|(d, n)| web(&mut random, d, n)).collect()
 }
 
-/// W as one number a coordinate.
+/// W as one number for each coordinate.
 fn weights(system: &System) -> Vec<f64> {
     system.inverse_masses().iter().flat_map(|w| vec![*w; system.dimension()]).collect()
 }
 
-/// The same system with other feedback, by way of the easy door.
+/// The same system with other feedback, set through `Simulation`.
 fn terms_with(system: &System, state: &State, feedback: Feedback) -> Terms {
     let settings = systems::settings(Integrator::Euler, 0.01);
     let mut simulation = Simulation::new(system.clone(), state.clone(), settings).unwrap();
@@ -33,8 +33,8 @@ fn acceleration_of_C(terms: &Terms) -> Vec<f64> {
     Jqdd.iter().zip(&terms.acceleration_bias).map(|(a, b)| a + b).collect()
 }
 
-/// What roundoff may leave of C̈'s members: 1e-13 of their largest, |b|, |A| |λ| and |J| |q̈|, some dozens of roundings
-/// each.
+/// The roundoff that is allowed in C̈: 1e-13 of the largest of its terms |b|, |A| |λ| and |J| |q̈|, each with some dozens
+/// of roundings.
 fn roundoff(terms: &Terms) -> f64 {
     let absolute = |x: &[f64]| x.iter().map(|x| x.abs()).collect::<Vec<_>>();
     let Al = multiply(&absolute(&terms.constraint_matrix.to_dense()), &absolute(&terms.multipliers));
@@ -190,7 +190,7 @@ fn elasticity_scales_the_constraint_force() {
     }
 }
 
-/// Every symbol scales as its unit says: four times the masses and forces, four times λ; the same q̈.
+/// Every symbol scales with its unit: four times the masses and forces give four times λ and the same q̈.
 #[test]
 fn units_are_kept() {
     let (system, state) = systems::truss(4, false);
@@ -206,7 +206,7 @@ fn units_are_kept() {
     builder.force(systems::gravity());
     let (heavy, state) = builder.build().unwrap();
     let fourfold = evaluate(&heavy, &state);
-    // Powers of four change no rounding, in a square root neither.
+    // Powers of four change no rounding, not even in a square root.
     assert_eq!(fourfold.tension, terms.tension.iter().map(|T| 4.0 * T).collect::<Vec<_>>());
     assert_eq!(fourfold.accelerations, terms.accelerations);
     assert!(dot(&fourfold.tension, &fourfold.tension) > 0.0);

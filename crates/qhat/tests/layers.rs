@@ -16,7 +16,7 @@ fn floors() -> Vec<String> {
     rows.map(|row| row.split('|').nth(2).unwrap().trim().trim_matches('`').to_owned()).collect()
 }
 
-/// Every source file of the engine below a folder, its tests apart.
+/// Every source file of the engine below a folder, without the tests.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -34,7 +34,7 @@ fn imported(source: &str) -> BTreeSet<String> {
     let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
     let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     let paths = code.match_indices("crate::").map(|(place, prefix)| &code[place + prefix.len()..]);
-    // `use crate::{a, b}` would hide the modules it names from this test.
+    // This test would not see the modules in `use crate::{a, b}`.
     paths.map(|path| if path.starts_with('{') { "{".to_owned() } else { word(path) }).collect()
 }
 

@@ -1,5 +1,5 @@
-//! The limits of what can be asked for: nothing at all to move, odd durations, a hand that grabs within a run,
-//! integrators that follow one another, loads and springs without measure.
+//! Unusual requests: systems in which nothing moves, odd durations, a hand that grabs during a run, changes of the
+//! integrator, extreme loads and springs.
 
 use crate::systems::open_chains::open_chains;
 use crate::systems::{self, FRAME};
@@ -46,7 +46,8 @@ fn a_duration_must_be_positive() {
     }
 }
 
-/// Each follows each, with frames of odd length, a hand that comes and goes, and gravity and drag that change.
+/// Every integrator follows every other, with frames of odd length, a hand that grabs and releases, and gravity and
+/// drag that change.
 #[test]
 fn long_integrators_follow_one_another() {
     for seed in [3, 8, 11] {
@@ -81,7 +82,8 @@ fn long_integrators_follow_one_another() {
     }
 }
 
-/// A limit of the whole run is auto's limit, too: a frame that does not arrive within it goes over, and does not fail.
+/// The limit of substeps is auto's limit, too: if a frame would exceed it, auto changes to bdf2 and the frame does not
+/// fail.
 #[test]
 fn auto_goes_over_where_substeps_are_limited() {
     let (system, state) = systems::double_pendulum();
@@ -89,7 +91,7 @@ fn auto_goes_over_where_substeps_are_limited() {
     for _ in 0..20 {
         simulation.step().unwrap();
     }
-    // Its substeps are known by now, and none is taken back.
+    // The substep is adapted by now, and no substep is rejected.
     let report = simulation.clone().advance(0.5).unwrap();
     assert_eq!((report.integrator, report.rejected), (Integrator::Dop853, 0));
     let max_substeps = report.substeps / 2;
@@ -99,7 +101,7 @@ fn auto_goes_over_where_substeps_are_limited() {
     assert_eq!(simulation.state().time(), 0.52);
 }
 
-/// The first substep tried overflows; a shorter one does not.
+/// The first substep overflows and is rejected; a shorter substep succeeds.
 #[test]
 fn long_springs_without_measure_do_not_end_a_run() {
     for stiffness in [1e12, 1e16, 1e20, 1e24] {
@@ -124,15 +126,15 @@ fn long_springs_without_measure_do_not_end_a_run() {
                 let report = simulation
                     .step()
                     .unwrap_or_else(|error| panic!("{stiffness:e} N/m, general {is_general}, frame {frame}: {error}"));
-                // 200 000 substeps are enough for the first.
+                // 200 000 substeps are enough for the first case.
                 assert_eq!(report.integrator == Integrator::Dop853, stiffness < 1e13);
             }
         }
     }
 }
 
-/// Masses 1e11 apart in one chain: what rattle corrects in a position is lost in roundoff, and dopri5 in lanes carries
-/// on.
+/// Masses that differ by 1e11 in one chain: the corrections of rattle are lost in the roundoff of the positions; dopri5
+/// in lanes succeeds.
 #[test]
 fn where_rattle_stalls_dopri5_carries_on() {
     let (system, state) = open_chains(91, 1e9, false);

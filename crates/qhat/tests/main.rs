@@ -1,5 +1,5 @@
-//! All tests of the engine from outside, in one binary: some thirty binaries linked one by one took most of the time of
-//! a test run. `cargo test --package qhat --test all kinds::` runs one file.
+//! All tests of the public interface of the engine, in one binary: to link some thirty binaries took most of the time
+//! of a test run. `cargo test --package qhat --test all kinds::` runs one file.
 //!
 //! No test here changes the environment, the working directory or rayon's global pool, so none needs a process of its
 //! own. Names that begin with `long_` simulate for seconds of real time; `make check` leaves them to `make test`.

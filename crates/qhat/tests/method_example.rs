@@ -1,6 +1,6 @@
-//! The pendulum that `docs/method/` works by hand. Each page carries it one stage further, in tables with the heading
-//! `| symbol | by hand | value | unit |`. This test reads every value out of those tables, computes it again with the
-//! engine, and holds the two to each other in every digit that is printed.
+//! The pendulum that `docs/method/` works by hand. Each page continues the example by one stage, in tables with the
+//! heading `| symbol | by hand | value | unit |`. This test reads every value from these tables, computes it again with
+//! the engine, and compares the two in every printed digit.
 
 #![allow(non_snake_case, reason = "the letters of the method keep their case")]
 
@@ -21,7 +21,7 @@ const HEADING: &str = "| symbol | by hand | value | unit |";
 /// Length of the rod [m]: the bob is at (1, −1), the pivot at (0, 0).
 const R: f64 = std::f64::consts::SQRT_2;
 
-/// One step [s], so long that the difference between integrators shows in the first digits.
+/// One step [s], so long that integrators differ in the first digits.
 const H: f64 = 0.1;
 
 fn pivot_id() -> ParticleId {
@@ -32,7 +32,7 @@ fn bob_id() -> ParticleId {
     systems::id(1)
 }
 
-/// Pivot, bob and gravity; what holds the bob is added.
+/// Pivot, bob and gravity; each test adds the constraint of the bob.
 fn hung(hold: impl FnOnce(&mut SystemBuilder)) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
@@ -48,7 +48,7 @@ fn pendulum() -> (System, State) {
     })
 }
 
-/// The bob's two numbers of a vector of four.
+/// The two components of the bob in a vector of four.
 fn bob(vector: &[f64]) -> Vec<f64> {
     vector[2..4].to_vec()
 }
@@ -59,7 +59,7 @@ fn at(state: &State, q: [f64; 2], qd: [f64; 2]) -> State {
 
 /// One frame of `H` with an integrator.
 fn stepped(system: &System, state: &State, integrator: Integrator) -> Simulation {
-    // So tolerant that an integrator with substeps of its own takes the frame in one.
+    // With this tolerance, an integrator with substeps of its own takes the frame in one substep.
     let settings = Settings { h: H, integrator, tolerance: 0.9, constraint_tolerance: 1e-12, ..Settings::default() };
     let mut simulation = Simulation::new(system.clone(), state.clone(), settings).unwrap();
     let report = simulation.step().unwrap();
@@ -270,7 +270,7 @@ fn energy() -> Vec<Line> {
     ]
 }
 
-/// The rod with a second one hanging from the bob.
+/// The rod, with a second rod that hangs from the bob.
 fn chain(form: DistanceForm) -> Terms {
     let (system, state) = hung(|builder| {
         let second = Particle::at("second", [1.0, -2.0]).with_mass(2.0).with_velocity([1.0, 1.0]);
@@ -283,7 +283,7 @@ fn chain(form: DistanceForm) -> Terms {
 
 fn chains() -> Vec<Line> {
     let (squared, length) = (chain(DistanceForm::Squared), chain(DistanceForm::Length));
-    // d·d − r² is twice the half squared form: J, γ and b are twice, A is four times, λ half of what the page says.
+    // d·d − r² is twice the half squared form: J, γ and b are twice, A is four times, λ half of the value on the page.
     let A: Vec<f64> = squared.constraint_matrix.to_dense().iter().map(|a| a / 4.0).collect();
     let b: Vec<f64> = squared.right_hand_side.iter().map(|b| b / 2.0).collect();
     let (e, p1) = (A[2], A[0]);
@@ -375,7 +375,7 @@ fn contacts() -> Vec<Line> {
     for (symbol, e) in [("q̇⁺ for e = 0", 0.0), ("q̇⁺ for e = ½", 0.5)] {
         let (system, state) = rope(e);
         let thrown = at(&state, [1.0, -1.0], [1.0, -1.0]);
-        // A frame so short that gravity adds nothing to the digits that the page shows.
+        // A frame so short that gravity does not change the digits on the page.
         let short = Settings { h: 1e-9, ..settings };
         let mut simulation = Simulation::new(system, thrown, short).unwrap();
         simulation.step().unwrap();
@@ -421,7 +421,7 @@ fn half_a_digit(printed: &str) -> f64 {
     0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap())
 }
 
-/// A printed number; the minus sign of a document is not that of a program.
+/// A printed number; documents and programs have different minus signs.
 fn number(printed: &str) -> f64 {
     printed.replace('−', "-").parse().unwrap_or_else(|error| panic!("{printed}: {error}"))
 }
@@ -440,7 +440,7 @@ fn every_number_of_the_example_is_what_the_engine_computes() {
             assert_eq!(row.len(), 4, "{page}.md: no cell may be empty: {row:?}");
             let printed: Vec<&str> = row[2].split(", ").collect();
             let fits = |(printed, value): (&&str, &f64)| {
-                // Rounding of the engine is below 1e-13 of these numbers; a hair of it lets a digit 5 round either way.
+                // Roundoff of the engine is below 1e-13 of these numbers; with it a digit 5 may round up or down.
                 (number(printed) - value).abs() <= half_a_digit(printed) + 1e-12
             };
             if printed.len() != values.len() || !printed.iter().zip(values).all(fits) {

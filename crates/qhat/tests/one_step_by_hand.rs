@@ -1,5 +1,5 @@
-//! One step of each explicit method by its formula, bit for bit, from the accelerations of `evaluate`; and what each
-//! does to the energy of an oscillator.
+//! One step of each explicit method by its formula, bit for bit, from the accelerations of `evaluate`; and the
+//! effect of each on the energy of an oscillator.
 
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close};
@@ -69,8 +69,8 @@ fn rk4_step() {
     }
 }
 
-/// Without damping explicit Euler multiplies the energy of an oscillator by 1 + h²ω² at every step, however small h is:
-/// what the source ran into. Semi-implicit Euler keeps it within hω.
+/// Without damping, explicit Euler multiplies the energy of an oscillator by 1 + h²ω² at every step, for every h. This
+/// was the source's problem. Semi-implicit Euler keeps the energy within hω.
 #[test]
 fn euler_gains_energy_where_symplectic_euler_does_not() {
     let mut builder = System::builder(Dimension::Two);

@@ -1,5 +1,5 @@
-//! The measured order of every integrator is its declared order ± 0.1, on constrained motion with every sort of force:
-//! in position, velocity and multipliers, and for the energy account it keeps.
+//! The measured order of every integrator is its declared order ± 0.1 on constrained motion with forces in q and in q̇:
+//! in position, velocity and multipliers, and in the account of energy.
 
 use crate::systems;
 use crate::systems::dense::difference;
@@ -29,9 +29,9 @@ const DURATION: f64 = 0.5;
 /// q, q̇, λ and the work booked after `steps` equal steps.
 fn run(integrator: Integrator, steps: usize) -> [Vec<f64>; 4] {
     let (system, mut state) = system();
-    // RATTLE then takes each frame in one substep: an error of almost 1 is allowed, and h is below what stability and
-    // the turning of the rods ask for. The report says so. Newton is driven to roundoff, far below the error that is
-    // measured.
+    // With these settings RATTLE takes each frame in one substep: an error of almost 1 is allowed, and h is below the
+    // bounds from stability and from the rotation of the rods. The report is checked for it. Newton iterates to
+    // roundoff, far below the measured error.
     let settings = Settings {
         integrator,
         h: DURATION / steps as f64,
@@ -53,7 +53,7 @@ fn observed(coarse: f64, fine: f64) -> f64 {
     libm::log2(coarse / fine)
 }
 
-/// `allowed` is how far the next terms of the error expansion may push the observed order at these h.
+/// `allowed` is the deviation of the observed order that the next terms of the error expansion may cause at these h.
 fn check(integrator: Integrator, steps: &[usize], allowed: f64) {
     // RK4 with 4e4 steps is exact to roundoff (h⁴ = 2e-20 in units of the motion's own time).
     let exact = run(Integrator::Rk4, 40_000);
@@ -85,7 +85,8 @@ fn rk4_is_of_order_four() {
 
 #[test]
 fn dopri5_is_of_order_five() {
-    // The pair was chosen for its small leading error, so the next term still shows where roundoff (1e-14) begins to.
+    // The pair was chosen for its small leading error. The next term is therefore still visible at errors at which
+    // roundoff (1e-14) is visible, too.
     check(Integrator::Dopri5, &[50, 100], 0.45);
 }
 
@@ -111,8 +112,9 @@ fn bdf2_is_of_order_two() {
     check(Integrator::Bdf2, &[400, 800, 1600], 0.1);
 }
 
-/// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors
-/// their square. Substeps are chosen from an estimate, so the power is not exact.
+/// With substeps of its own choice, RATTLE's error falls with the ⅔ power of the tolerance: the substep is proportional
+/// to the cube root of the tolerance, and the error to the square of the substep. Substeps are chosen from an estimate,
+/// so the power is not exact.
 #[test]
 fn long_rattle_follows_its_tolerance() {
     let error = |tolerance: f64| {
@@ -132,7 +134,7 @@ fn long_rattle_follows_its_tolerance() {
     }
 }
 
-/// Symmetric: there and back again with the velocities turned round ends where it began. Only without drag.
+/// RATTLE is symmetric: a run forwards, then with reversed velocities, ends at the start. This holds only without drag.
 #[test]
 fn rattle_is_reversible() {
     let (system, start) = systems::double_pendulum();
@@ -153,7 +155,7 @@ fn rattle_is_reversible() {
         let turned = state.velocities().iter().map(|v| -v).collect();
         state = state.with_motion(state.positions().to_vec(), turned);
     }
-    // Roundoff of 1000 steps, multiplied by the motion's own sensitivity (about 1e2 in a second).
+    // Roundoff of 1000 steps, multiplied by the sensitivity of the motion (about 1e2 in a second).
     let error = difference(state.positions(), start.positions());
     assert!(error < 1e-10, "off by {error:e}; the method's own error at this h is some 1e-5");
 }

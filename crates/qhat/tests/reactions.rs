@@ -1,4 +1,4 @@
-//! The constraint force Q̂: it does no work on legal motion, changes no momentum, and has the sign that is promised.
+//! The constraint force Q̂: it does no work on motion with Ċ = 0, changes no momentum, and has the documented sign.
 
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close, dot};
@@ -12,7 +12,7 @@ fn legal(system: &System, state: &mut State) {
     project(system, state, &settings, &mut Workspace::new(system)).unwrap();
 }
 
-/// The power that Q̂ would have if it pushed every coordinate along at the 1 m/s they start with.
+/// The power that Q̂ would have if every coordinate moved in its direction at 1 m/s, the size of the start velocities.
 fn size(terms: &Terms) -> f64 {
     terms.constraint_forces.iter().map(|force| force.abs()).sum()
 }
@@ -47,7 +47,7 @@ fn constraint_force_does_no_work_on_legal_motion() {
     }
 }
 
-/// Σ m q̈ and Σ x × m q̈ of a structure that nothing outside touches.
+/// Σ m q̈ and Σ x × m q̈ of a free structure.
 #[test]
 fn internal_forces_change_no_momentum() {
     let mut random = Random::new(4);
@@ -84,7 +84,7 @@ fn tension_at_rest_is_plus_mg_and_lambda_minus_mg() {
     // A handful of operations, each rounded once.
     assert_close("λ", terms.multipliers[0], -MG, 1e-14 * MG);
     assert_close("tension", terms.tension[0], MG, 1e-14 * MG);
-    // On the bob the rod pulls up; on the pivot it pulls down.
+    // The rod pulls the bob up and the pivot down.
     assert_close("Q̂ on the bob", terms.constraint_forces[3], MG, 1e-14 * MG);
     assert_close("Q̂ on the pivot", terms.constraint_forces[1], -MG, 1e-14 * MG);
     assert_all_close("q̈", &terms.accelerations, &[0.0; 4], 1e-14 * MG);
@@ -123,7 +123,7 @@ fn lambda_of_a_nail_is_its_force_on_the_particle() {
     assert!(terms.tension.is_empty(), "a nail is no link");
 }
 
-/// The source's nail holds a particle only from outside: away from p its λ pulls back, λ J = −F.
+/// The scalar nail of the source can hold a particle only away from p. There its λ balances the load, λ J = −F.
 #[test]
 fn scalar_nail_carries_along_its_gradient_only() {
     let mut builder = System::builder(Dimension::Two);
@@ -134,7 +134,7 @@ fn scalar_nail_carries_along_its_gradient_only() {
     builder.force(PointForce { particle: crate::systems::id(0), force: [3.0, 0.0, 0.0] });
     let (system, state) = builder.build().unwrap();
     let terms = evaluate(&system, &state);
-    // J = (0, −0.2), so λ = −mg/0.2; sideways nothing holds.
+    // J = (0, −0.2), so λ = −mg/0.2; no row holds the particle sideways.
     assert_close("λ", terms.multipliers[0], -MG / 0.2, 1e-13 * MG / 0.2);
     assert_close("q̈ along", terms.accelerations[1], 0.0, 1e-13);
     assert_eq!(terms.accelerations[0], 1.5);

@@ -1,5 +1,5 @@
-//! What is refused: numbers out of range, names that do not exist, motions that are lost. Every refusal is a typed
-//! error with a sentence that names the culprit, and the last good state stays.
+//! Refusals: numbers out of range, names that do not exist, motions that cannot be continued. Every refusal is a typed
+//! error whose text names the cause, and the last good state is kept.
 
 use crate::systems;
 use qhat::{
@@ -13,7 +13,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
 
-/// Two particles, and one thing wrong.
+/// Two particles, and one error.
 fn message(change: impl FnOnce(&mut SystemBuilder, ParticleId, ParticleId)) -> String {
     let mut builder = System::builder(Dimension::Two);
     let a = builder.particle(Particle::at("a", [0.0, 0.0]));
@@ -173,7 +173,7 @@ fn settings_out_of_range() {
             Simulation::new(system.clone(), state.clone(), settings).unwrap_err().to_string(),
             error.to_string()
         );
-        // A step refuses them as well, and touches nothing.
+        // A step refuses them as well, and does not change the state.
         let before = state.clone();
         let refused = step(&system, &mut state, &settings, &mut Workspace::new(&system)).unwrap_err();
         assert_eq!(refused.to_string(), error.to_string());
@@ -270,7 +270,7 @@ fn a_diverging_run_stops_at_the_last_good_state() {
         assert_eq!(&last, simulation.state());
         assert_eq!(bits(last.positions()), bits(simulation.state().positions()));
         assert_eq!(bits(last.velocities()), bits(simulation.state().velocities()));
-        // It says the same again, and does not go on.
+        // The next step gives the same error.
         assert_eq!(simulation.step().unwrap_err(), error);
         assert_eq!(&last, simulation.state());
     }
@@ -286,7 +286,7 @@ fn more_substeps_than_allowed() {
     assert_eq!(error, StepError::TooManySubsteps { time, max_substeps: 7 });
     assert!(time > 0.0 && time < 1.0, "the state is that after the last substep");
     assert!(simulation.state().positions().iter().all(|x| x.is_finite()));
-    // It may go on from there.
+    // The run may go on from this state.
     simulation.set_settings(Settings { h: 0.01, ..Settings::default() }).unwrap();
     assert!(simulation.step().unwrap().max_relative_length_error < 1e-10);
 }

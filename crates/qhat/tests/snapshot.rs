@@ -1,5 +1,5 @@
-//! Save, load, go on = go on, bit for bit, at every step: a State holds all that a restart needs, a Workspace nothing
-//! that changes a result.
+//! A run that is saved and loaded at any step gives the same bits as a run without a stop: a State holds all that a
+//! restart needs, and a Workspace holds nothing that changes a result.
 
 use crate::systems;
 use qhat::{Integrator, Settings, Simulation, State, System, Workspace, evaluate, step};
@@ -33,7 +33,7 @@ fn long_a_fresh_workspace_changes_no_bit_for_any_integrator() {
     for integrator in Integrator::ALL {
         let settings = settings(integrator);
         for (name, system, start) in cases() {
-            // The web starts off its constraints, where an integrator that projects may not.
+            // The web starts off its constraints, which integrators that project do not allow.
             let Ok(simulation) = Simulation::new(system.clone(), start, settings) else { continue };
             let mut state = simulation.state().clone();
             let mut kept = Workspace::new(&system);
@@ -50,7 +50,7 @@ fn long_a_fresh_workspace_changes_no_bit_for_any_integrator() {
     }
 }
 
-/// A workspace that was used for something else in between does not matter, either.
+/// A workspace that another run has used gives the same bits, too.
 #[test]
 fn a_used_workspace_changes_no_bit() {
     for integrator in Integrator::ALL {
@@ -67,7 +67,7 @@ fn a_used_workspace_changes_no_bit() {
             };
             let first = once(&mut workspace);
             assert_eq!(first, once(&mut workspace), "{name} under {integrator}");
-            // Left behind by another integrator, in the middle of somewhere else.
+            // Another integrator has left its data in the middle of another motion.
             let mut elsewhere = start.clone();
             let other = systems::settings(Integrator::Euler, 1e-4);
             step(&system, &mut elsewhere, &other, &mut workspace).unwrap();
@@ -76,7 +76,7 @@ fn a_used_workspace_changes_no_bit() {
     }
 }
 
-/// Looking changes nothing: terms, tension and energy between the steps leave the motion as it is.
+/// Reading terms, tension or energy between the steps does not change the motion.
 #[test]
 fn looking_changes_no_bit() {
     for integrator in Integrator::ALL {

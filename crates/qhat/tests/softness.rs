@@ -2,7 +2,7 @@
 //! the canonical row, to rounding.
 //!
 //! The foreign schemes are run on the smallest system that has a row: one mass on a line, C = x, J = 1, γ = 0, A = w,
-//! stepped velocity first. The source's two menus are the engine's own and are read off its terms.
+//! stepped velocity first. The two menus of the source are settings of the engine and are checked on its terms.
 
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close, multiply, solve};
@@ -32,7 +32,7 @@ fn canonical(Start { m, x, v, Q, h }: Start, row: SoftRow) -> [f64; 2] {
     [x + h * v, v]
 }
 
-/// Both to a few roundings of the terms that were summed.
+/// Both steps agree to a few roundings of the terms that were summed.
 fn check(what: &str, start: Start, foreign: [f64; 2], row: SoftRow) {
     let Start { m, x, v, Q, h } = start;
     let speed = v.abs() + h * Q.abs() / m + x.abs() / h;

@@ -1,17 +1,17 @@
-//! How rattle chooses its substeps: short enough to be stable, to turn no rod far and to resolve the damping, equal
-//! within a frame, and each begun from a good guess of λ.
+//! The substeps that rattle chooses: short enough to be stable, to turn no rod far and to resolve the damping. They are
+//! equal within a frame, and each begins with a good guess of λ.
 
 use crate::systems;
 use qhat::{Dimension, Distance, Drag, Integrator, Particle, Settings, StepReport, System, Workspace, step};
 
-/// Frames of h under a tolerance that allows everything, so that nothing but the bounds under test limits the substep.
+/// Frames of h under a tolerance that allows every error, so that only the bounds under test limit the substep.
 fn frames(system: &System, start: &qhat::State, h: f64, count: usize) -> Vec<StepReport> {
     let settings = Settings { integrator: Integrator::Rattle, h, tolerance: 0.999, ..Settings::default() };
     let (mut state, mut workspace) = (start.clone(), Workspace::new(system));
     (0..count).map(|_| step(system, &mut state, &settings, &mut workspace).unwrap()).collect()
 }
 
-/// A chain hung vertically at rest moves nowhere, so that no error asks for short substeps; but its waves of up to
+/// A chain that hangs at rest does not move, so no error asks for short substeps. But its waves of up to
 /// ω = 2 √(T/(m L)) would grow out of roundoff unless h ω < 2.
 #[test]
 fn substeps_are_stable_under_tension() {
@@ -32,13 +32,14 @@ fn substeps_are_stable_under_tension() {
     for report in frames(&system, &state, 1.0 / 60.0, 5) {
         let h = 1.0 / 60.0 / report.substeps as f64;
         assert!(h * omega < 2.0, "hω = {}", h * omega);
-        // Gershgorin's bound is within √2 of the truth for a chain: no shorter than a quarter of what would do.
+        // Gershgorin's bound is within √2 of the exact ω for a chain, so the substep is at least a quarter of the
+        // longest stable substep.
         assert!(h * omega > 0.5, "hω = {}: shorter than needed", h * omega);
         assert!(report.max_relative_length_error <= 1e-10);
     }
 }
 
-/// A rod that spins freely about a fixed end: T = m ω² L, so stability asks for hω < 1.4/√2 or so of a turn's radian,
+/// A rod that spins freely about a fixed end: T = m ω² L, so stability needs h ω < 1.4/√2 rad or so,
 /// and a substep may not turn it by more than about a third of a radian.
 #[test]
 fn substeps_turn_no_rod_far() {
@@ -55,7 +56,7 @@ fn substeps_turn_no_rod_far() {
     }
 }
 
-/// Drag enters explicitly: h kd/m < 2, or velocities would change sign and grow.
+/// Drag is explicit: unless h kd/m < 2, velocities would change sign and grow.
 #[test]
 fn substeps_resolve_the_damping() {
     let mut builder = System::builder(Dimension::Two);
@@ -69,7 +70,7 @@ fn substeps_resolve_the_damping() {
     }
 }
 
-/// No slivers: what remains of a frame is taken whole, or in halves.
+/// No very short substeps: the rest of a frame is taken as one substep or as two halves.
 #[test]
 fn substeps_of_a_frame_are_alike() {
     let (system, state) = systems::double_pendulum();
@@ -80,15 +81,16 @@ fn substeps_of_a_frame_are_alike() {
         let report = step(&system, &mut state, &settings, &mut workspace).unwrap();
         worst = worst.min(report.smallest_substep * report.substeps as f64 / settings.h);
     }
-    // Half of what remains is the least that the end of a frame asks for, and the motion changes its pace within one.
+    // At the end of a frame the shortest substep is half of the rest. The motion also changes the substep within a
+    // frame.
     assert!(worst > 0.25, "the smallest substep was {worst} of the mean");
 }
 
-/// λ of the last substep is the guess for the next: Newton then needs one to two iterations, of which one is always
-/// made.
+/// λ of the last substep is the guess for the next: Newton then needs one or two iterations; the first
+/// is always made.
 #[test]
 fn multipliers_of_the_last_substep_start_the_next() {
-    // Counted, with a little room; half of λ as a guess needs one more in each.
+    // Counted, with a small margin; with half of λ as the guess each substep needs one more iteration.
     for (name, (system, state), allowed) in [
         ("pendulum", systems::pendulum(1.0), 1.2),
         ("double pendulum", systems::double_pendulum(), 2.1),

@@ -1,4 +1,5 @@
-//! Tension of ropes and struts: m g where a weight hangs or stands on one, nothing where it is slack.
+//! Tension of ropes and struts: m g if a weight hangs from a rope or stands on a strut, zero if the rope or strut is
+//! slack.
 
 use crate::systems::dense::assert_close;
 use crate::systems::{G, gravity, settings};
@@ -9,8 +10,8 @@ use qhat::{
 
 const MASS: f64 = 3.0;
 
-/// A weight at a place beside a held particle, on a rope or a strut, after a frame: what stands at a limit acts from
-/// the first step on.
+/// A weight on a rope or a strut from a fixed particle, after one frame: a link that starts at its limit acts from the
+/// first step on.
 fn after_a_frame(at: [f64; 2], limits: impl Fn(ParticleId, ParticleId) -> Limits) -> Simulation {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
@@ -40,7 +41,7 @@ fn a_weight_on_a_rope_pulls_it_with_m_g() {
     }
 }
 
-/// Known before the first step, where nothing closes in.
+/// The tension is known before the first step if the contact does not close.
 #[test]
 fn a_rope_that_starts_taut_pulls_from_the_start() {
     let mut builder = System::builder(Dimension::Two);
@@ -52,8 +53,8 @@ fn a_rope_that_starts_taut_pulls_from_the_start() {
     assert_close("tension", simulation.tension()[0], MASS * G, 1e-12 * MASS * G);
 }
 
-/// A pendulum on a rope or a strut, let go level, carries 3 m g cos a, and breaks at twice its weight where a rod
-/// would.
+/// A pendulum on a rope or a strut, released from the horizontal, carries 3 m g cos a. At twice its weight it breaks at
+/// the same place as a rod.
 #[test]
 fn what_breaks_is_slack_from_then_on() {
     let limits: [fn(ParticleId, ParticleId) -> Limits; 2] =
@@ -74,7 +75,7 @@ fn what_breaks_is_slack_from_then_on() {
         let broke = broke.expect("it carries more than it can");
         assert_eq!(simulation.system().broken_links(simulation.state()), [0]);
         assert_eq!(simulation.tension(), [0.0]);
-        // From there, 2/3 m below the pivot at √(2 g 2/3), it flies.
+        // The bob flies from there: 2/3 m below the pivot, at the speed √(2 g 2/3).
         let t = simulation.state().time() - broke.time;
         let (sin, cos) = ((1.0_f64 - 4.0 / 9.0).sqrt(), 2.0 / 3.0);
         let speed = (2.0 * G * cos).sqrt();
@@ -102,7 +103,7 @@ fn a_weight_on_a_strut_pushes_it_with_m_g() {
     }
 }
 
-/// One list: links and tensions go together, whatever stands between them.
+/// Links and tensions have the same order, also with other constraints between the links.
 #[test]
 fn links_are_in_the_order_of_tension() {
     let mut builder = System::builder(Dimension::Two);
@@ -121,7 +122,7 @@ fn links_are_in_the_order_of_tension() {
     assert_eq!(seen, [("rope", 0..2, false), ("rod", 4..5, true), ("strut", 5..6, false)]);
     assert_eq!((links[0].shortest, links[0].longest), (Some(0.5), Some(1.0)));
     assert_eq!((links[1].shortest, links[2].longest), (Some(2.0), None));
-    // The last particle is 2 m below the one before: nothing holds it.
+    // The last particle is 2 m below the particle before it: nothing holds it.
     for (tension, mass) in terms.tension.iter().zip([1.0, 2.0, 0.0]) {
         assert_close("tension", *tension, mass * G, 1e-12 * G);
     }

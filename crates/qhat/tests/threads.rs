@@ -6,7 +6,7 @@ use rayon::ThreadPoolBuilder;
 
 const THREADS: [usize; 4] = [1, 2, 8, 32];
 
-/// Many chains in one system, and one chain long enough for its arrays to be cut.
+/// Many chains in one system, and one chain that is long enough for its arrays to be divided among threads.
 fn large() -> Vec<Simulation> {
     let settings = Settings { integrator: Integrator::Dop853, h: 1e-3, ..Settings::default() };
     let systems = [systems::chains(900, 20), systems::chain(40_000, 1.0)];

@@ -20,7 +20,7 @@ fn inertia(S: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { trace - S[i][j] } else { -S[i][j] }))
 }
 
-/// Numbers of order one, rounded some ten times.
+/// Tolerance for numbers of order one after some ten roundings.
 const ROUNDING: f64 = 1e-14;
 
 fn assert_moments(what: &str, body: &Body, mass: f64, centre: [f64; 3], S: [[f64; 3]; 3]) {
@@ -97,7 +97,8 @@ fn bodies_in_the_plane_have_their_polar_moment() {
     assert_moments("in the plane", &body, mass, [0.3, -0.2, 0.0], [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0; 3]]);
 }
 
-/// The tensor of clouds of one to five particles is that of a body; one in a line or a plane comes out as thin.
+/// A body made from the inertia tensor of a cloud of particles has this tensor; a cloud in a line or a plane gives a
+/// thin body.
 #[test]
 fn a_body_from_an_inertia_tensor_has_it() {
     let cloud = [[0.1, 0.7, -0.2], [0.9, -0.3, 0.4], [-0.6, 0.2, 0.8], [0.3, 0.3, -0.9], [-0.5, -0.4, 0.1]];
@@ -137,7 +138,7 @@ fn what_no_body_has_is_refused() {
     assert_eq!(Body::in_plane(1.0, [1.0; 2], 1e-40), Err(BodyError::Lost));
 }
 
-/// Freedom: 3 in the plane, 6 in space, 5 for a line in space; and no row repeats another.
+/// Degrees of freedom: 3 in the plane, 6 in space, 5 for a line in space. No row depends on the others.
 #[test]
 fn rods_hold_a_body_and_none_repeats_another() {
     let block = |count| Body::block(1.0, [0.0; 3], &EDGES[..count]).unwrap();
@@ -185,7 +186,7 @@ fn long_compound_pendulum_swings_as_one_of_two_thirds_its_length() {
             builder.with_constraint("hinge", Nail::new(ids[0], [0.0; 3])).force(gravity());
             let (system, state) = builder.build().unwrap();
             let simulation = Simulation::new(system, state, accurate()).unwrap();
-            // The tolerance of a substep: an error of order 8 that does not add up in one direction. Measured: 5e-12.
+            // The tolerance of a substep; the errors do not add up in one direction. Measured: 5e-12.
             assert_close("period", swing::measured(simulation, dimension.number(), 5), period, 1e-10 * period);
         }
         if amplitude < 0.01 {
@@ -266,6 +267,6 @@ fn a_free_body_tumbles_as_euler_says() {
         assert_all_close("angular momentum", &momentum(&simulation), &start, 1e-11);
     }
     assert!(flips >= 2, "{flips}");
-    // Both are kept by each projection to the 1e-13 of the rods.
+    // Each projection keeps both to 1e-13, the tolerance of the rods.
     assert!(simulation.energy_error_max() < 1e-11, "{:e}", simulation.energy_error_max());
 }

@@ -43,14 +43,14 @@ fn a_hanging_chain_stays_at_rest() {
     for integrator in Integrator::ALL {
         let (system, state, below) = hanging(40, Dimension::Two);
         let start = state.positions().to_vec();
-        // 0.1 ms is stable for the fixed steps; the chain's fastest wave has some 1000 rad/s.
+        // Fixed steps of 0.1 ms are stable: the fastest wave of the chain has some 1000 rad/s.
         let h = if integrator.is_adaptive() { 1.0 / 60.0 } else { 1e-4 };
         let mut simulation = Simulation::new(system, state, systems::settings(integrator, h)).unwrap();
         for _ in 0..if integrator.is_adaptive() { 60 } else { 1000 } {
             simulation.step().unwrap();
         }
         let moved: Vec<f64> = simulation.state().positions().iter().zip(&start).map(|(a, b)| a - b).collect();
-        // Roundoff of 40 links' worth of m g, integrated for up to a second: far below what a person or a plot sees.
+        // Roundoff of the weight of 40 links, integrated for up to a second: far below the resolution of a plot.
         assert!(largest(&moved) < 1e-10, "{integrator}: moved by {:e}", largest(&moved));
         for (tension, weight) in simulation.tension().iter().zip(&below) {
             assert_close(&format!("tension under {integrator}"), *tension, *weight, 1e-8 * weight);
@@ -105,7 +105,7 @@ fn a_mass_on_two_ropes() {
 }
 
 /// A Warren truss of p panels under its own nodes' weight w = m g: the bottom chord by the method of sections. With the
-/// supports carrying half of all each, the moment about the top node of panel i gives T h = M.
+/// supports each carrying half of the load, the moment about the top node of panel i gives T h = M.
 #[test]
 fn truss_chords_by_the_method_of_sections() {
     let panels = 6;

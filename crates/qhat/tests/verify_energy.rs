@@ -1,4 +1,4 @@
-//! Conservation: energy, momentum, and the account of what enters and leaves.
+//! Conservation of energy and momentum, and the account of energy that enters and leaves.
 
 use crate::systems;
 use crate::systems::dense::assert_close;
@@ -20,14 +20,14 @@ fn double_pendulum_keeps_its_energy() {
     let (system, state) = systems::double_pendulum();
     let mut simulation = Simulation::new(system, state, tight(1e-8)).unwrap();
     run(&mut simulation, 12.0);
-    // Order 2: substeps shrink with the cube root of the tolerance, errors by its ⅔ power. 1e-4 leaves 6e-4, so 1e-8
+    // Order 2: substeps shrink with the cube root of the tolerance, errors with its ⅔ power. 1e-4 leaves 6e-4, so 1e-8
     // must leave about 1e-6.
     assert!(simulation.energy_error_max() < 4e-6, "{:e}", simulation.energy_error_max());
     assert!(simulation.energy().kinetic > 0.1, "it still swings");
 }
 
-/// A chain of 100 links let go from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. One setting,
-/// the default, must do for both.
+/// A chain of 100 links released from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. The
+/// default settings must be enough for both.
 #[test]
 fn long_whipping_chains_keep_length_and_energy_under_dop853() {
     for heavy in [1.0, 1000.0] {
@@ -40,9 +40,9 @@ fn long_whipping_chains_keep_length_and_energy_under_dop853() {
             assert!(report.max_relative_length_error <= settings.constraint_tolerance);
             substeps += report.substeps;
         }
-        // Twice the tolerance of 1e-4: errors of substeps add up, but most of them were made in the crack alone.
+        // Twice the tolerance of 1e-4: errors of substeps add up, but most of the error is made in the crack.
         assert!(simulation.energy_error_max() < 2e-4, "{heavy}: {:e}", simulation.energy_error_max());
-        // Measured: 423 and 870. Ten times fewer than RATTLE is what order 8 is for.
+        // Measured: 423 and 870, ten times fewer than RATTLE, because the order is 8.
         assert!(substeps < 1000, "{heavy}: {substeps} substeps");
     }
 }
@@ -96,7 +96,7 @@ fn free_structure_keeps_momentum_and_energy() {
     }
 }
 
-/// Under gravity alone the centre of mass falls as a stone, whatever the rods do.
+/// Under gravity alone the centre of mass falls as a free particle, with any rods.
 #[test]
 fn centre_of_mass_falls_freely() {
     let (plain, state) = systems::free_structure();
@@ -127,19 +127,20 @@ fn centre_of_mass_falls_freely() {
     }
 }
 
-/// Kinetic + potential + dissipated stays the same: what drag takes is booked.
+/// The sum of kinetic, potential and dissipated energy is constant: the account contains the energy that drag takes.
 #[test]
 fn long_damped_motion_closes_the_account() {
     for (integrator, h, allowed) in [
         // RATTLE and its trapezoidal account are of order 2: 4e-4 at the tolerance of 1e-4, smaller by its ⅔ power.
         // Were only one of them of order 1, 3e-5 would be left.
         (Integrator::Rattle, 1.0 / 60.0, 4e-6),
-        // Booked with the method's own weights; (hω)⁴ at the whip's 30 rad/s.
+        // The work is summed with the weights of the method; (hω)⁴ at the 30 rad/s of the whip.
         (Integrator::Rk4, 1e-3, 1e-6),
         // Order 1: of 10 J, about hω at the mean 3 rad/s.
         (Integrator::SymplecticEuler, 1e-4, 2e-4),
         (Integrator::Euler, 1e-4, 2e-4),
-        // These lose ½ m (h q̈)² a step, of order 1, and of order 2; the whip has q̈ = 1e2 to 1e3 m/s².
+        // These methods lose ½ m (h q̈)² in a step, an error of order 1 and of order 2; the whip has q̈ = 1e2 to 1e3
+        // m/s².
         (Integrator::Implicit, 1e-4, 5e-3),
         (Integrator::Bdf2, 1e-4, 1e-5),
     ] {
@@ -160,7 +161,7 @@ fn long_damped_motion_closes_the_account() {
     }
 }
 
-/// A pendulum that drag brings to rest has lost exactly its height.
+/// A pendulum that drag brings to rest has lost exactly the potential energy of its height.
 #[test]
 fn drag_takes_all_there_was() {
     let (system, state) = systems::pendulum(2.0);
@@ -170,11 +171,11 @@ fn drag_takes_all_there_was() {
     let height = 1.0 - libm::cos(2.0);
     let lost = -simulation.energy().work.dissipation;
     assert!(simulation.energy().kinetic < 1e-12, "{:e}", simulation.energy().kinetic);
-    // Order 2: 1e-4 of it are missing at a tolerance of 1e-5, so 5e-6 at 1e-7.
+    // Order 2: an error of 1e-4 at a tolerance of 1e-5 becomes 5e-6 at 1e-7.
     assert_close("dissipated", lost, 2.0 * systems::G * height, 1e-5 * lost);
 }
 
-/// The hand that moves the mouse spring does work, and it is booked.
+/// The hand that moves the mouse spring does work, which the account of energy contains.
 #[test]
 fn mouse_spring_work_is_booked() {
     let (system, state) = systems::double_pendulum();
@@ -183,7 +184,7 @@ fn mouse_spring_work_is_booked() {
     assert_eq!(simulation.state().work().external, 0.0);
     let tip = crate::systems::id(2);
     simulation.grab(tip, [1.6, 1.8, 0.0]).unwrap();
-    // Taking hold one metre away stretches the spring: ½ ks · 1².
+    // A hand that grabs from one metre away stretches the spring: ½ ks · 1².
     let stiffness = simulation.mouse().unwrap().stiffness;
     assert_close("external work of the grip", simulation.state().work().external, 0.5 * stiffness, 1e-12 * stiffness);
     for frame in 0..120 {
@@ -194,7 +195,7 @@ fn mouse_spring_work_is_booked() {
     let before = simulation.state().work().external;
     let stored = simulation.energy().potential;
     simulation.release();
-    // Letting go gives the spring's energy back to the hand.
+    // On release the energy of the spring goes back to the hand.
     let given_back = before - simulation.state().work().external;
     assert_close("given back", given_back, stored - simulation.energy().potential, 1e-12 * stiffness);
     assert!(given_back > 0.0 && simulation.mouse().is_none());
@@ -204,8 +205,8 @@ fn mouse_spring_work_is_booked() {
     assert!(simulation.energy().work.dissipation < 0.0, "the spring is damped");
 }
 
-/// What feedback and elasticity do through Q̂ is booked as stabilization: the account of explicit Euler closes to its
-/// order.
+/// The work of feedback and elasticity through Q̂ is booked as stabilization. The account of explicit Euler closes with
+/// an error of order 1.
 #[test]
 fn stabilization_work_is_booked() {
     let missing = |h: f64| {
@@ -218,7 +219,7 @@ fn stabilization_work_is_booked() {
         simulation.energy().balance() - start
     };
     let (coarse, fine) = (missing(1e-4), missing(5e-5));
-    // Order 1: half the step, half of what is missing. If the work of Q̂ were not booked, both would be the same.
+    // Order 1: half the step gives half the error. If the work of Q̂ were not booked, both errors would be the same.
     assert_close("ratio", coarse / fine, 2.0, 0.05);
 }
 

@@ -1,4 +1,5 @@
-//! What a user writes moves as what is built in, closes its energy account, and ends in an error where it has no value.
+//! Expressions of a user give the same motion as built-in kinds, close their account of energy, and end in an error
+//! where they have no value.
 
 use crate::systems;
 use qhat::{
@@ -8,7 +9,7 @@ use qhat::{
 };
 
 const GRAVITY: Gravity = Gravity { acceleration: [0.0, -9.81, 0.0] };
-/// Of all chains here, p0 to p3.
+/// The particles of all chains here, p0 to p3.
 const START: [f64; 8] = [0.0, 0.0, 1.0, 0.0, 1.6, 0.8, 1.6, 1.8];
 
 fn parse(purpose: Purpose, text: &str) -> Expression {
@@ -38,8 +39,7 @@ fn particles() -> SystemBuilder {
     builder
 }
 
-/// The chain, with a last link that is built in: the length of the system, in which errors are measured, is then the
-/// same.
+/// The chain with a built-in last link, so that both systems have the same length scale, in which errors are measured.
 fn chain(constraints: Vec<Constraint>, forces: Vec<Force>) -> SystemBuilder {
     let mut builder = particles();
     for (k, constraint) in constraints.into_iter().enumerate() {
@@ -67,7 +67,7 @@ fn apart(one: &Simulation, other: &Simulation) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// What is missing in the balance of energy [J].
+/// The error in the balance of energy [J].
 fn missing(builder: SystemBuilder, integrator: Integrator, tolerance: f64, h: f64) -> f64 {
     let (system, state) = builder.clone().build().unwrap();
     let begin = Simulation::new(system, state, Settings { integrator, ..Settings::default() }).unwrap();
@@ -75,10 +75,10 @@ fn missing(builder: SystemBuilder, integrator: Integrator, tolerance: f64, h: f6
     (end.energy().balance() - begin.energy().balance()).abs()
 }
 
-/// How near twins stay over a second. dop853 at a tolerance of 1e-12 follows the motion itself, to some 1e-12 a
-/// substep. The others have errors of their own, equal for twins that take equal steps: what differs is where their
-/// Newton solves stop, some 1e-13 m in each of 100 steps, which is 1e-11 m/s in a velocity and up to 1e-9 m after a
-/// second.
+/// The distance that twins may have after a second. dop853 at a tolerance of 1e-12 follows the motion itself, to some
+/// 1e-12 a substep. The other methods have larger errors, which are equal for twins with equal steps. Twins differ
+/// where their Newton solves stop, some 1e-13 m in each of 100 steps, which is 1e-11 m/s in a velocity and up to 1e-9 m
+/// after a second.
 const TWINS: [(Integrator, f64, f64); 4] = [
     (Integrator::Dop853, 1e-12, 1e-10),
     (Integrator::Bdf2, 1e-4, 2e-9),
@@ -122,7 +122,7 @@ fn nails_and_rods_as_expressions_move_as_the_built_in_ones() {
     }
 }
 
-/// The classic forms under Euler's method, where they need feedback: the same arithmetic but for roundoff.
+/// The classic forms under Euler's method, where they need feedback: the same arithmetic up to roundoff.
 #[test]
 fn the_scalar_nail_as_an_expression_moves_as_the_built_in_one() {
     let feedback = Feedback { ks: 50.0, kd: 10.0, diagonal_drag: 0.1, elasticity: 0.1 };
@@ -145,7 +145,7 @@ fn forces_as_expressions_move_as_the_built_in_ones() {
         let forces = vec![GRAVITY.into(), Drag { coefficient: 0.3 }.into(), spring(0.7).into()];
         chain(held(), forces)
     };
-    // The pull of the spring on p2, along the way to p0.
+    // The pull of the spring on p2, in the direction of p0.
     let rate = "dot([p0.vx - p2.vx, p0.vy - p2.vy], p0 - p2)/dist(p0, p2)";
     let pull = format!("(40*(dist(p0, p2) - 1) + 0.7*{rate})/dist(p0, p2)");
     let written = || {
@@ -158,9 +158,9 @@ fn forces_as_expressions_move_as_the_built_in_ones() {
         };
         chain(held(), (0..4).map(of).collect())
     };
-    // A step of bdf2 and implicit ends with its velocity put onto Ċ = 0 in the metric M + h² K of Newton's matrix. A
-    // damped spring leaves a part of its K out that the expressions have: a difference of h² K/M of what that changes,
-    // itself some h².
+    // At the end of a step of bdf2 and implicit, the velocity is projected onto Ċ = 0 in the metric M + h² K of
+    // Newton's matrix. The K of a damped spring lacks a part that the expressions have. The projections then differ by
+    // h² K/M times their change of the velocity, which is itself some h².
     let by_components = TWINS.map(|(integrator, tolerance, allowed)| match integrator {
         Integrator::Bdf2 | Integrator::Implicit => (integrator, tolerance, 1e-5),
         _ => (integrator, tolerance, allowed),
@@ -179,15 +179,15 @@ fn driven() -> SystemBuilder {
     let mut builder = particles();
     builder.with_constraint("x", row("p0.x")).constraint("y", row("p0.y"));
     builder.constraint("driven", row("dist(p0, p1) - (1 + 0.1*sin(3*t))"));
-    // Consistent with the rate of the length, 0.3 m/s at the start: p1 is pushed by the projection, and Euler's methods
-    // start from rest with Ċ off by as much; what holds is the acceleration.
+    // The length changes at 0.3 m/s at the start. The projection gives p1 this velocity. Euler's methods do not
+    // project: they start from rest with Ċ off by 0.3 m/s, and only the acceleration is consistent.
     builder.force(GRAVITY);
     builder
 }
 
 #[test]
 fn a_driven_length_closes_the_energy_account() {
-    // The largest kinetic energy is some 20 J. Adaptive methods close it as well as their tolerance says.
+    // The largest kinetic energy is some 20 J. The account of adaptive methods closes to their tolerance.
     for (integrator, tolerance, allowed) in [
         (Integrator::Dop853, 1e-10, 1e-7),
         (Integrator::Dopri5, 1e-9, 1e-6),
@@ -199,7 +199,7 @@ fn a_driven_length_closes_the_energy_account() {
     }
 }
 
-/// By what power of h the missing energy falls where h is halved.
+/// The power of h with which the error in the energy falls when h is halved.
 #[test]
 fn fixed_steps_close_it_at_their_order() {
     for (integrator, order, h) in [
@@ -211,12 +211,12 @@ fn fixed_steps_close_it_at_their_order() {
     ] {
         let [coarse, fine] = [h, 0.5 * h].map(|h| missing(driven(), integrator, 1e-4, h));
         let found = (coarse / fine).log2();
-        // Two steps of h tell the order but for the next power.
+        // Two steps of h give the order up to the effect of the next power.
         assert!(found > order - 0.2, "{integrator}: order {found}, {coarse:e} J and {fine:e} J");
     }
 }
 
-/// A spring that someone stiffens: ∂V/∂t crosses the border.
+/// A spring whose stiffness changes with time: the account contains the power ∂V/∂t.
 #[test]
 fn a_potential_that_changes_with_time_closes_the_account() {
     let system = || {
@@ -224,7 +224,7 @@ fn a_potential_that_changes_with_time_closes_the_account() {
         builder.force(potential("20*(1 + 0.5*sin(2*t))*(dist(p0, p1) - 0.5)^2 + p2.x*cos(t) + p3.y^2"));
         builder
     };
-    // Some 10 J move to and fro.
+    // Some 10 J go back and forth between kinetic and potential energy.
     let exact = missing(system(), Integrator::Dop853, 1e-10, 0.01);
     assert!(exact < 1e-7, "dop853: {exact:e} J");
     let [coarse, fine] = [0.004, 0.002].map(|h| missing(system(), Integrator::Rk4, 1e-4, h));

@@ -19,7 +19,7 @@ fn run(simulation: &mut Simulation, frames: usize) {
     }
 }
 
-/// Every new kind at once on a small tree of rods.
+/// All kinds of forces together on a small tree of rods.
 fn with_every_force(random: &mut Random, d: usize) -> (System, State) {
     let mut builder = System::builder(dimension(d));
     let points = random.points(7, d, 1.0);
@@ -88,7 +88,7 @@ fn a_kepler_orbit_closes_and_keeps_what_it_should() {
     }
 }
 
-/// V = ½ k (θ − θ₀)² of a hinge whose other arm is held is a harmonic oscillator at any amplitude.
+/// A hinge with V = ½ k (θ − θ₀)² and one fixed arm is a harmonic oscillator at any amplitude.
 #[test]
 fn a_torsion_pendulum_swings_in_its_period() {
     for d in [2, 3] {
@@ -112,8 +112,8 @@ fn a_torsion_pendulum_swings_in_its_period() {
     }
 }
 
-/// m ẍ = f cos(ω t + φ), and the work that it does. A free particle goes in lanes: what they freeze within a frame
-/// shows here.
+/// m ẍ = f cos(ω t + φ), and the work that it does. A free particle goes into lanes, so this test
+/// also checks the forces that lanes keep constant within a frame.
 #[test]
 fn a_harmonic_force_follows_the_time() {
     for integrator in [Integrator::Dop853, Integrator::Dopri5, Integrator::Rk4] {
@@ -176,13 +176,13 @@ fn a_closed_mesh_is_pushed_nowhere() {
     }
 }
 
-/// A loop of equal rods under pressure comes to rest as the regular polygon; here by the method that solves with the
-/// tangents.
+/// A loop of equal rods under pressure comes to rest as the regular polygon, here with an implicit method, which uses
+/// the tangents.
 #[test]
 fn a_loop_under_pressure_becomes_regular() {
     let (n, r, p) = (12, 0.3, 40.0);
     let mut builder = System::builder(Dimension::Two);
-    // A circle pressed flat: the start is moved onto the rods' lengths.
+    // A flattened circle; the projection of the start gives the rods their lengths.
     let place = |i: usize| 2.0 * PI * i as f64 / n as f64;
     let ids: Vec<ParticleId> = (0..n)
         .map(|i| builder.particle(Particle::at(format!("{i}"), [0.7 * libm::cos(place(i)), 0.4 * libm::sin(place(i))])))
@@ -197,7 +197,7 @@ fn a_loop_under_pressure_becomes_regular() {
     let mut simulation = simulation(builder.build().unwrap(), Integrator::Implicit, 1e-6, 0.05);
     run(&mut simulation, 600);
     let radius = r / (2.0 * libm::sin(PI / n as f64));
-    // What is left of the slowest swing after 30 s, and rods held to 1e-10.
+    // The slowest oscillation that remains after 30 s, and rods held to 1e-10.
     for tension in simulation.tension() {
         assert_close("tension", tension, p * radius * libm::cos(PI / n as f64), 1e-4);
     }
@@ -206,9 +206,9 @@ fn a_loop_under_pressure_becomes_regular() {
     }
 }
 
-/// A regular polygon of n particles of mass m, let go at the radius R, holds A = k r², k = ½ n sin(2π/n). With γ = 2
-/// the force on each, 2 k r p/n, is as r⁻³: r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀) has
-/// gone into motion.
+/// A regular polygon of n particles of mass m, released at the radius R, has the area A = k r², k = ½ n sin(2π/n). With
+/// γ = 2 the force on each, 2 k r p/n, is as r⁻³: r² = R² (1 + (2 k p₀/(n m)) t²). With γ = 1 the energy p₀ A₀ ln(A/A₀)
+/// has become kinetic energy.
 #[test]
 fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
     let (n, m, radius, p) = (7, 0.3, 0.8, 2.0);
@@ -241,8 +241,8 @@ fn a_loop_of_particles_flies_apart_as_its_gas_expands() {
     }
 }
 
-/// The methods that solve at the end of the step use its tangent, which is dense: pressed to a hundredth of its volume
-/// and let go, a gas settles where its pressure meets the weight, p₀ (A₀/A)^γ w = m g.
+/// Implicit methods use the tangent of a gas, which is dense. A gas that is pressed to a hundredth of its volume and
+/// released settles where its pressure carries the weight, p₀ (A₀/A)^γ w = m g.
 #[test]
 fn a_piston_settles_on_its_gas() {
     for integrator in [Integrator::Implicit, Integrator::Bdf2] {
@@ -257,7 +257,7 @@ fn a_piston_settles_on_its_gas() {
         builder.with_force(gas).with_force(systems::gravity()).force(qhat::Drag { coefficient: 2.0 });
         let mut simulation = simulation(builder.build().unwrap(), integrator, 1e-6, 0.02);
         run(&mut simulation, 1500);
-        // What is left of the swing, which fades as e^(−2t).
+        // The oscillation that remains; it decays as e^(−2t).
         let height = 0.01 * libm::pow(1000.0 / systems::G, 1.0 / 1.4);
         assert_close("height", simulation.state().positions()[5], height, 1e-9);
     }

@@ -1,4 +1,4 @@
-//! Closed forms of gears and clusters; those of pulleys, motors and ratios are in the shipped scenes.
+//! Closed forms of gears and clusters. The closed forms of pulleys, motors and ratios are in the shipped scenes.
 
 use crate::systems::random::Random;
 use crate::systems::settings;
@@ -8,8 +8,8 @@ fn unit(angle: f64) -> [f64; 2] {
     [libm::cos(angle), libm::sin(angle)]
 }
 
-/// A sun of 30 teeth that stands, a carrier, and a planet of 15: by Willis, (ω_planet − ω_carrier) 15 = (ω_carrier − 0)
-/// 30, so the planet turns three times a turn of the carrier. With no force on it the carrier keeps its speed.
+/// A fixed sun of 30 teeth, a carrier, and a planet of 15 teeth. By Willis, (ω_planet − ω_carrier) 15 = (ω_carrier − 0)
+/// 30, so the planet turns three times for each turn of the carrier. Without a force the carrier keeps its speed.
 #[test]
 fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     let mut builder = System::builder(Dimension::Two);
@@ -30,7 +30,7 @@ fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     builder.constraint("mesh", Gears::mesh([[sun, mark], [planet, one]], [30, 15], start[0]));
     let (system, state) = builder.build().unwrap();
     let mut simulation = Simulation::new(system, state, settings(Integrator::Dop853, 0.01)).unwrap();
-    // Five turns of the carrier and a bit, fifteen of the planet.
+    // A little more than five turns of the carrier and fifteen of the planet.
     let duration = 32.0;
     for _ in 0..3200 {
         simulation.step().unwrap();
@@ -38,14 +38,14 @@ fn a_planet_turns_three_times_a_turn_of_its_carrier() {
     let q = simulation.state().positions();
     let (carrier, spoke) = (unit(duration), unit(3.0 * duration));
     for k in 0..2 {
-        // Speeds off by the projections' 1e-10 of a length, over 32 s.
+        // Errors of the speeds from projections to 1e-10 of a length, over 32 s.
         assert!((q[4 + k] - 1.5 * carrier[k]).abs() < 1e-7, "{q:?}");
         assert!((q[6 + k] - q[4 + k] - 0.5 * spoke[k]).abs() < 1e-7, "{q:?}");
     }
 }
 
-/// Random clusters are held by the fewest rods: as many as their degrees of freedom less those of a rigid body, all
-/// independent.
+/// Random clusters are held by the fewest rods: their number of degrees of freedom minus that number for a rigid body,
+/// all rods independent.
 #[test]
 fn clusters_take_the_fewest_rods_and_hold() {
     let mut random = Random::new(9);

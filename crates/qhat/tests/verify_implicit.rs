@@ -1,5 +1,5 @@
-//! Methods that solve at the end of the step: heavy loads and stiff springs at a frame of 1/60 s, where every explicit
-//! method fails; buckling, nets, redundant rows; rods that give way.
+//! Implicit methods: heavy loads and stiff springs at a frame of 1/60 s, where every explicit method fails; buckling,
+//! nets, redundant rows; rods with compliance.
 
 use crate::systems::dense::assert_close;
 use crate::systems::{self, FRAME};
@@ -14,7 +14,8 @@ fn start((system, state): (System, State), integrator: Integrator, h: f64) -> Si
     Simulation::new(system, state, systems::settings(integrator, h)).unwrap()
 }
 
-/// Everything over some frames in one report, factorizations a frame, and the largest rise of T + V in a step [J].
+/// The reports of some frames summed up in one report, the factorizations in a frame, and the largest rise of T + V in
+/// a step [J].
 fn run(simulation: &mut Simulation, frames: usize) -> (StepReport, f64, f64) {
     let (mut total, mut rise) = (StepReport::default(), f64::NEG_INFINITY);
     let mut last = simulation.energy().total();
@@ -94,7 +95,7 @@ fn long_heavy_ends_stay_on_their_rods() {
                 let tip = &simulation.state().positions()[100 * dimension.number()..];
                 assert!(systems::dense::norm(tip) < 1.0 + 1e-9, "{case}: {tip:?}");
                 if integrator == Integrator::Implicit {
-                    // What is solved to 1e-10 of the extent may rise by as much of the energy.
+                    // A step solved to 1e-10 of the extent may raise the energy by 1e-10 of it.
                     assert!(rise <= 1e-10 * total.energy.kinetic.max(1.0), "{case}: T + V rose by {rise:e} J");
                 }
             }
@@ -102,7 +103,7 @@ fn long_heavy_ends_stay_on_their_rods() {
     }
 }
 
-/// A tenth of a second a step, from rest, under every load: |C| within 1e-10 wherever it goes.
+/// Steps of a tenth of a second, from rest, under every load: |C| stays within 1e-10.
 #[test]
 fn a_tenth_of_a_second_is_not_too_long() {
     for ratio in [1.0, 1e3, 1e6, 1e9] {
@@ -126,9 +127,9 @@ fn long_a_cloth_hangs_and_loses_energy() {
     assert!(total.max_relative_length_error <= 1e-10, "{total:?}");
 }
 
-/// Two rods that stand on a pin under a load: their geometric stiffness is negative. The knee, pushed aside by a hair,
-/// must give to that side. (s = √(2T/(mL)) is 9/s here. Backward Euler grows by 1/(1 − h s) a step, so from h s = 1 on
-/// it would give to the other side.)
+/// Two rods that stand on a pin under a load: their geometric stiffness is negative. The knee, pushed a little to one
+/// side, must buckle to that side. (s = √(2T/(mL)) is 9/s here. Backward Euler grows by 1/(1 − h s) a step, so from h s
+/// = 1 on it would buckle to the other side.)
 #[test]
 fn a_column_buckles_to_the_side_it_is_pushed() {
     for push in [1e-4, -1e-4] {
@@ -156,7 +157,7 @@ fn a_column_buckles_to_the_side_it_is_pushed() {
     }
 }
 
-/// A square with both diagonals and a load: one row too many for its particles. It carries as without the second.
+/// A square with both diagonals and a load has one redundant row. It moves in the same way without the second diagonal.
 #[test]
 fn a_redundant_brace_carries_as_without() {
     let frame = |braces: usize| {
@@ -187,7 +188,7 @@ fn a_redundant_brace_carries_as_without() {
     }
 }
 
-/// A parallelogram linkage driven through the position where all its bars lie on one line, and rank drops for an
+/// A parallelogram linkage driven through the position in which all its bars are in line and the rank drops for an
 /// instant.
 #[test]
 fn a_parallelogram_goes_through_flat() {
@@ -228,7 +229,7 @@ fn long_a_compliant_rod_sags_by_its_compliance() {
         for _ in 0..4000 {
             simulation.step().unwrap();
         }
-        // e⁻ᵏᵗ with k = 16/s is over after 2 s; a row that gives way
+        // e⁻ᵏᵗ with k = 16/s is over after 2 s; a compliant row
         // is solved to half of 1e-10 of its length times 1 + α c/h = 201.
         assert_close(&format!("{integrator}: y"), simulation.state().positions()[3], -1.0 - compliance * weight, 2e-8);
         assert_close(&format!("{integrator}: tension"), simulation.tension()[0], weight, 2e-5);
@@ -236,7 +237,8 @@ fn long_a_compliant_rod_sags_by_its_compliance() {
     }
 }
 
-/// A rod that gives way is the spring it says it is, under an explicit method, and close to it where the row is solved.
+/// A compliant rod gives the same motion as its spring under an explicit method, and nearly the same motion where the
+/// row is solved.
 #[test]
 fn a_compliant_rod_is_a_spring() {
     let build = |as_rod: bool| {
@@ -257,8 +259,8 @@ fn a_compliant_rod_is_a_spring() {
         // The same sums in another order: roundoff.
         (Integrator::Rk4, 1e-3, 1e-11),
         (Integrator::Rattle, 0.01, 1e-11),
-        // The same equations; Newton's method factors at other iterates, and velocities are projected with what it
-        // factored last: a thousandth of what the methods themselves are off by.
+        // The same equations. Newton's method factors at other iterates, and velocities are projected with the last
+        // factor: the difference is a thousandth of the error of the methods.
         (Integrator::Implicit, 1.0 / 240.0, 1e-4),
         (Integrator::Bdf2, 1.0 / 240.0, 1e-4),
     ] {
@@ -314,8 +316,8 @@ fn strong_drag_is_stable() {
     }
 }
 
-/// Two iterations a frame are too few for a whipping chain: every frame that was not solved says what it is off by, and
-/// the chain hangs together all the same.
+/// Two iterations a frame are too few for a whipping chain. Every frame that was not solved reports its residual, and
+/// the links of the chain still hold.
 #[test]
 fn a_spent_budget_is_reported_and_holds() {
     for integrator in IMPLICIT {
@@ -325,7 +327,7 @@ fn a_spent_budget_is_reported_and_holds() {
         let mut warned = 0;
         for _ in 0..240 {
             let report = simulation.step().unwrap();
-            // One for the first try, one for the fallback.
+            // One factorization for the first try, one for the fallback.
             assert!(report.iterations <= 2 && report.substeps == 1, "{integrator}: {report:?}");
             for warning in report.warnings {
                 let Warning::BudgetSpent { iterations, relative, ref row, .. } = warning else { panic!("{warning}") };

@@ -46,7 +46,7 @@ fn tension_along_the_swing() {
         assert_close("m g (3 cos θ − 2 cos θ₀)", tension, conserved, 1e-4);
         (least, most) = (least.min(tension), most.max(tension));
     }
-    // Beyond 90° the rod pushes; at the bottom it carries m g (3 − 2 cos θ₀).
+    // Above 90° the rod pushes; at the bottom it carries m g (3 − 2 cos θ₀).
     assert!(least < -15.0, "{least}");
     assert!(most > 2.0 * G * (3.0 - 2.0 * libm::cos(amplitude)) - 1.0, "{most}");
 }
@@ -66,7 +66,8 @@ fn conical_pendulum_keeps_its_height() {
     let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Rattle, 1e-3)).unwrap();
     for _ in 0..2000 {
         simulation.step().unwrap();
-        // RATTLE follows a circle of slightly other radius: (hω)² with ω² = g/(L cos α) = 13/s², 1e-5 of the height.
+        // RATTLE follows a circle of a slightly different radius: (hω)² with ω² = g/(L cos α) = 13/s², 1e-5 of the
+        // height.
         assert_close("height", simulation.state().positions()[4], -cosine, 1e-5);
         assert_close("tension", simulation.tension()[0], 2.0 * G / cosine, 1e-3);
     }

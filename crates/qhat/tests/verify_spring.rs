@@ -10,7 +10,7 @@ const MASS: f64 = 2.0;
 const STIFFNESS: f64 = 50.0;
 const REST: f64 = 1.0;
 
-/// A mass on a horizontal spring, stretched by 0.3 m and let go; along x only.
+/// A mass on a horizontal spring, stretched by 0.3 m and released; along x only.
 fn oscillator(damping: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let wall = builder.particle(Particle::at("wall", [0.0, 0.0]).fixed());
@@ -56,7 +56,7 @@ fn long_frequency_and_damping_of_a_mass_on_a_spring() {
     }
 }
 
-/// The spring's own length is the rest length: released there, it stays.
+/// A spring that is released at its rest length stays at rest.
 #[test]
 fn a_spring_at_rest_length_is_at_rest() {
     let (system, state) = oscillator(0.5);
@@ -69,7 +69,7 @@ fn a_spring_at_rest_length_is_at_rest() {
     }
 }
 
-/// Hung on a spring, a mass rests m g/ks below.
+/// A mass that hangs on a spring rests m g/ks below the rest length.
 #[test]
 fn spring_sags_by_weight_over_stiffness() {
     let mut builder = System::builder(Dimension::Three);
@@ -88,8 +88,8 @@ fn spring_sags_by_weight_over_stiffness() {
     assert_eq!(simulation.state().velocities()[3], 0.0);
 }
 
-/// About where it hangs, a pendulum on a spring bounces with √(ks/m) and swings as one on a rod of the length l that it
-/// hangs at, with √(g/l). Its scene, `elastic-pendulum`, takes the first twice the second.
+/// Near its rest position, a pendulum on a spring bounces at √(ks/m) and swings at √(g/l), as on a rod of its length l
+/// at rest. In its scene, `elastic-pendulum`, the first is twice the second.
 #[test]
 fn a_pendulum_on_a_spring_bounces_and_swings() {
     let l = REST + MASS * G / STIFFNESS;
@@ -109,8 +109,7 @@ fn a_pendulum_on_a_spring_bounces_and_swings() {
             [state.positions()[2], -l - state.positions()[3]]
         })
     };
-    // In parts of the amplitude: what it adds to the frequencies, of its first order at most as it bends the path, is
-    // 1e-5.
+    // Relative to the amplitude. The change of the frequencies with the amplitude is at most of first order, 1e-5.
     let cosine = [0.0, -1.0, 0.0, 1.0];
     let swing = at_quarters(small, 0.0, (G / l).sqrt());
     let bounce = at_quarters(0.0, small, (STIFFNESS / MASS).sqrt());
@@ -167,7 +166,7 @@ fn free_flight_is_a_parabola() {
     }
 }
 
-/// The mouse spring is a spring of no length: the same closed form about its target.
+/// The mouse spring is a spring of rest length zero: the same closed form about its target.
 #[test]
 fn mouse_spring_oscillates_about_its_target() {
     let mut builder = System::builder(Dimension::Two);

@@ -19,7 +19,7 @@ export interface PlotOptions {
   line: string;
 }
 
-/** A residual of exactly zero has no logarithm; it is drawn here, a hundredth of the rounding of a metre. */
+/** A residual of exactly zero has no logarithm and is drawn at this value, a hundredth of the roundoff of a metre. */
 export const FLOOR = 1e-18;
 
 export class Plot {
@@ -53,7 +53,7 @@ export class Plot {
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        // one lone sample gets a second to stand in
+        // a single sample gets an axis of one second
         x: { time: false, range: (_plot, min, max) => [min ?? 0, max > min ? max : (min ?? 0) + 1] },
         y: logarithmic
           ? { distr: 3, log: 10, range: (_plot, min, max) => decades(min, max) }
@@ -112,7 +112,7 @@ export class Plot {
   }
 }
 
-/** Whole decades, at least three, so that rounding noise is not blown up to a mountain range. */
+/** Whole decades, at least three, so that roundoff does not fill the plot. */
 function decades(min: number | null, max: number | null): [number, number] {
   if (min === null || max === null || !(max > 0)) return [1e-16, 1];
   const high = Math.ceil(Math.log10(max) + 0.1);
@@ -120,7 +120,7 @@ function decades(min: number | null, max: number | null): [number, number] {
   return [10 ** low, 10 ** high];
 }
 
-/** A tenth of air above and below; a constant gets room of its own size. */
+/** A margin of a tenth above and below; for a constant a margin of its own size. */
 function room(min: number | null, max: number | null): [number, number] {
   if (min === null || max === null) return [0, 1];
   const span = max - min;
@@ -128,7 +128,7 @@ function room(min: number | null, max: number | null): [number, number] {
   return [min - air, max + air];
 }
 
-/** At most five lines: a range of many decades gets one every few. */
+/** At most five lines: in a range of many decades, lines are several decades apart. */
 function everyFewDecades(low: number, high: number): number[] {
   const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
   const every = Math.max(1, Math.ceil((last - first) / 4));

@@ -29,18 +29,18 @@ export class RealTimeClock {
     private readonly budgetMs = STEP_BUDGET_MS,
   ) {}
 
-  /** Simulated seconds per wall second over the last half second, as a part of the speed asked for; 1 is on time. */
+  /** Simulated seconds per wall second over the last half second, relative to the chosen speed; 1 is on time. */
   get ratio(): number {
     return this.asked > 0 ? this.done / this.asked : 1;
   }
 
-  /** True where the page cannot hold the speed it was asked for. */
+  /** True if the page cannot hold the chosen speed. */
   get late(): boolean {
     // an eye does not notice 5 %, and one step more or less in a frame makes less than 5 %
     return this.asked > 0 && this.ratio < 0.95;
   }
 
-  /** Forgets the time that passed while nothing ran. */
+  /** Ignores the time that passed while the run was paused. */
   restart(): void {
     this.lastMs = null;
     this.owed = 0;

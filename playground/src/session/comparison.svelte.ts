@@ -9,11 +9,11 @@ export class Comparison {
   on = $state(false);
   integrator = $state<Controls['integrator']>('euler');
   formulation = $state<Controls['formulation']>('modern');
-  /** why the ghost stopped or could not start, in the engine's words */
+  /** why the ghost stopped or could not start: the message of the engine */
   stopped = $state.raw<string | null>(null);
   ghost: Run | null = null;
 
-  /** The ghost came, changed or went: both runs start again, because only then they differ by the method alone. */
+  /** The ghost was added, changed or removed. Both runs start again, so that they differ by the method alone. */
   readonly changed = new Signal();
 
   constructor(private readonly session: Session) {
@@ -37,7 +37,7 @@ export class Comparison {
     this.ghost = null;
   }
 
-  /** The ghost's controls: those of the run, by the ghost's own method. */
+  /** The controls of the ghost: the controls of the run, with the method of the ghost. */
   private controlsOf(controls: Controls): Controls {
     return { ...controls, integrator: this.integrator, formulation: this.formulation };
   }

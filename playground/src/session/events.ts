@@ -15,7 +15,7 @@ const WORDS: Record<StepEvent['kind'], string> = {
   broke: 'breaks',
 };
 
-/** The kind of an event in words; of an impact with its closing speed. */
+/** The kind of an event in words; for an impact with its closing speed. */
 export function eventWords({ kind, speed }: StepEvent): string {
   return kind === 'impact' && speed !== undefined ? `impact at ${format(speed)} m/s` : WORDS[kind];
 }

@@ -32,13 +32,13 @@ export class History {
     else this.start = (this.start + 1) % this.capacity;
   }
 
-  /** The newest value of a trace; NaN where there is none. */
+  /** The newest value of a trace; NaN if the trace has none. */
   last(index: number): number {
     if (this.length === 0) return Number.NaN;
     return this.columns[index][(this.start + this.length - 1) % this.capacity];
   }
 
-  /** One trace, oldest first; null where there is no value, as uPlot wants its gaps. */
+  /** One trace, oldest value first; null stands for a missing value, which uPlot draws as a gap. */
   trace(index: number): (number | null)[] {
     const column = this.columns[index];
     const values: (number | null)[] = new Array(this.length);

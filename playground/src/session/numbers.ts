@@ -1,4 +1,4 @@
-// Numbers for people: three digits, a true minus sign, powers of ten where the plain form would be a row of zeros.
+// Numbers for people: three digits, a typographic minus sign, and powers of ten in place of long rows of zeros.
 
 const SUPERSCRIPTS: Record<string, string> = {
   '-': '⁻',
@@ -33,7 +33,7 @@ export function fixed(value: number, decimals: number): string {
   return Number.isFinite(value) ? minus(value.toFixed(decimals)) : '–';
 }
 
-/** Below this, in m, m/s or N, and below this part of its largest component, a component of a vector is rounding. */
+/** Size, absolute in m, m/s or N and relative to the largest component, below which a component counts as roundoff. */
 const ROUNDING = 1e-12;
 
 export function vector(values: ArrayLike<number>, digits = 3): string {
@@ -42,7 +42,7 @@ export function vector(values: ArrayLike<number>, digits = 3): string {
   return `(${components.map((value) => format(Math.abs(value) < noise ? 0 : value, digits)).join(', ')})`;
 }
 
-/** The engine's errors read as sentences; on the page they also look like some. */
+/** An error of the engine as a sentence: with a capital and a full stop. */
 export function sentence(message: string): string {
   return message.charAt(0).toUpperCase() + message.slice(1) + (/[.!?]$/.test(message) ? '' : '.');
 }
@@ -51,7 +51,7 @@ function minus(text: string): string {
   return text.replace('-', '−');
 }
 
-/** The next of 1, 2, 5 × 10ⁿ at or above a size: where a legend may end. */
+/** The least of the numbers 1, 2, 5 × 10ⁿ that is not below a size: the end of a scale. */
 export function niceCeiling(size: number): number {
   if (!(size > 0) || !Number.isFinite(size)) return 1;
   const power = 10 ** Math.floor(Math.log10(size));

@@ -7,7 +7,7 @@ import type { Hand } from './hand';
 import type { Session } from './session.svelte';
 import { Signal } from './signal';
 
-/** Simulated seconds a wall second. */
+/** Simulated seconds in a second of wall time. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
 export class Playback {
@@ -25,7 +25,7 @@ export class Playback {
   readonly stepped = new Signal<[StepReport]>();
   /** The runs moved: all steps of an animation frame, or a single one, are done. */
   readonly moved = new Signal();
-  /** Time stands still, by a person's wish or because the run stopped. */
+  /** The runs are paused, by a person or because the run stopped. */
   readonly halted = new Signal();
 
   constructor(
@@ -34,7 +34,7 @@ export class Playback {
     private readonly hand: Hand,
   ) {
     session.opened.listen(() => {
-      // a person who asked the system for less motion decides when the scene moves
+      // if the system is set to less motion, a person starts the scene
       this.running = !matchMedia('(prefers-reduced-motion: reduce)').matches;
       this.begin();
     });
@@ -109,7 +109,7 @@ export class Playback {
     if (this.stopped) this.halted.send();
   }
 
-  /** One step of both runs; false where the run has stopped. */
+  /** One step of both runs; false if the run has stopped. */
   private advance(): boolean {
     const run = this.session.run!;
     if (!run.step()) {

@@ -33,7 +33,7 @@ export function boxOfMotion(simulation: Simulation, structure: Structure): Box {
   return within(box, still);
 }
 
-/** Points around a shape of finite size; an endless shape is in view anywhere and gets none. */
+/** Points around a bounded shape. A shape without ends crosses any view and needs none. */
 function extentOf({ kind, particles, points, size }: Shape, dimension: number): number[][] {
   const point = (i: number) => Array.from(points.subarray(3 * i, 3 * i + dimension));
   const around = (centre: number[], reach: number[]) =>

@@ -1,4 +1,4 @@
-// The numbers and words that the panels show about the running scene, refreshed at a pace at which they can be read.
+// The numbers and messages that the panels show about the running scene, refreshed as fast as a person can read.
 
 import { type Controls, EngineError, type StepEvent, type StepReport, type Terms } from '../engine';
 import type { Selection } from '../view/picture';
@@ -13,7 +13,7 @@ import type { Session } from './session.svelte';
 /** Time between two refreshes of the panels, ms: ten a second are as many as a person can read. */
 const PANEL_INTERVAL_MS = 100;
 
-/** Time that the words of a warning stay after the last step that raised it, ms: one step alone would flash by. */
+/** Time for which a warning is shown after the last step that raised it, ms. A warning of a single step would flash. */
 const WARNING_STAYS_MS = 3000;
 
 /** Traces of the history, in this order. */
@@ -22,14 +22,14 @@ export const TRACES = ['time', 'kinetic', 'potential', 'total', 'missing', 'resi
 export class Readings {
   /** s */
   time = $state(0);
-  /** simulated time reached, as a part of the time asked for */
+  /** simulated seconds per wall second, relative to the chosen speed */
   ratio = $state(1);
-  /** true where the machine cannot hold the speed */
+  /** true if the machine cannot hold the chosen speed */
   late = $state(false);
   warnings = $state.raw<string[]>([]);
   /** integrator that `auto` chose for the last step; null before the first step or under any other integrator */
   chosen = $state.raw<Controls['integrator'] | null>(null);
-  /** why `auto` went over to bdf2, in the engine's words; null where it did not */
+  /** why `auto` changed to bdf2: the message of the engine; null if it did not */
   tooStiff = $state.raw<string | null>(null);
   /** how the last step was solved; null before the first step */
   solver = $state.raw<StepReport['solver'] | null>(null);
@@ -48,7 +48,7 @@ export class Readings {
   readonly history = new History(TRACES.length);
   private lastRefreshMs = 0;
   private warnedMs = -Infinity;
-  /** the last events, ahead of those shown until the next refresh */
+  /** the last events, including events that the next refresh will show */
   private lastEvents: readonly StepEvent[] = [];
 
   constructor(
@@ -77,7 +77,7 @@ export class Readings {
     this.refresh();
   }
 
-  /** Refreshes the panels of a scene that moves, at their own pace. */
+  /** Refreshes the panels of a scene that moves, if the time for a refresh has come. */
   frame(timeMs: number): void {
     if (timeMs - this.lastRefreshMs < PANEL_INTERVAL_MS || !(this.playback.running || this.hand.held)) return;
     this.lastRefreshMs = timeMs;
@@ -132,13 +132,13 @@ export class Readings {
     this.ghostResidual = this.comparison.ghost?.report?.max_residual ?? 0;
     const wanted = this.termsOpen || this.selection !== null || !running;
     this.terms = wanted ? this.readTerms() : null;
-    // a state at rest has warnings of its own, whatever the step before it raised
+    // the warnings of a paused state are those of the state and not of the last step
     if (!running && this.terms) this.warnings = [...this.startWarnings(), ...this.terms.warnings];
     else if (performance.now() - this.warnedMs > WARNING_STAYS_MS) this.warnings = [];
     this.tick += 1;
   }
 
-  /** Says by how much a start that violated its constraints was moved: the author of the scene wants to know. */
+  /** The note for the author of a scene whose start violated its constraints: the displacement of the start. */
   private startWarnings(): string[] {
     const simulation = this.session.run?.simulation;
     const projection = simulation?.projection();

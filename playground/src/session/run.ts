@@ -3,16 +3,16 @@
 import { type Controls, defaultFrameWork, EngineError, Simulation, type StepReport } from '../engine';
 
 /**
- * Row solves a frame of auto on the page. The engine's default takes a tenth of a second a frame and more, which suits
- * a run that is written to a file; a person at the mouse needs a frame in sixteen milliseconds.
+ * Limit of row solves in a frame for auto on the page. The engine's default allows a tenth of a second and more for a
+ * frame, which suits a run that is written to a file. On the page a frame must take at most sixteen milliseconds.
  */
 const FRAME_WORK = 1_000_000;
 
 export class Run {
-  /** why the run stopped, in the engine's words; null while it can go on */
+  /** why the run stopped: the message of the engine; null while the run can go on */
   stopped: EngineError | null = null;
   report: StepReport | null = null;
-  /** T + V less the energy that came in, at the start, in J: missing energy is counted from this balance */
+  /** T + V minus the energy supplied, at the start, in J: the energy error is counted from this balance */
   private balance: number;
 
   private constructor(readonly simulation: Simulation) {
@@ -25,11 +25,11 @@ export class Run {
     return { kinetic, potential, total, missing: balance - this.balance };
   }
 
-  /** Throws EngineError where the text is no scene. */
+  /** Throws EngineError if the text is no scene. */
   static open(text: string, sourceName: string): Run {
     const simulation = new Simulation(text, sourceName);
     const controls = simulation.controls();
-    // a limit that the scene sets stays
+    // a limit in the scene is kept
     if (controls.frame_work === defaultFrameWork()) {
       simulation.setControls({ ...controls, frame_work: FRAME_WORK });
     }
@@ -49,7 +49,7 @@ export class Run {
     return run;
   }
 
-  /** One step of h; false where it has stopped. */
+  /** One step of h; false if the run has stopped. */
   step(): boolean {
     if (this.stopped) return false;
     try {
@@ -62,7 +62,7 @@ export class Run {
     }
   }
 
-  /** Back to the start of the motion, under the controls as they are now. */
+  /** Returns to the start of the motion with the present controls. */
   reset(): void {
     this.stopped = null;
     this.report = null;
@@ -70,7 +70,7 @@ export class Run {
       this.simulation.reset();
       this.balance = this.simulation.energy().balance;
     } catch (error) {
-      // the integrator that was chosen since cannot make this start consistent
+      // the integrator chosen in the meantime cannot make this start consistent
       if (!(error instanceof EngineError)) throw error;
       this.stopped = error;
     }

@@ -8,7 +8,7 @@ export interface LogRange {
 
 /** The position at the right end of a logarithmic slider; the left end is 0. */
 export const TICKS = 1000;
-/** Positions left of this one are the value 0: wide enough to hit. */
+/** Positions to the left of this position have the value 0; the range is wide enough to be hit with a mouse. */
 const ZERO_TICKS = 60;
 
 export function toTick(value: number, range: LogRange): number {
@@ -18,7 +18,7 @@ export function toTick(value: number, range: LogRange): number {
   return Math.round(ZERO_TICKS + part * (TICKS - ZERO_TICKS));
 }
 
-/** Rounded to two digits, as fine as a slider is; the number beside the slider takes any value. */
+/** A value rounded to two digits, the resolution of a slider; the number beside the slider takes any value. */
 export function fromTick(tick: number, range: LogRange): number {
   if (tick < ZERO_TICKS) return 0;
   const part = (tick - ZERO_TICKS) / (TICKS - ZERO_TICKS);

@@ -1,4 +1,4 @@
-// Where the text of a scene comes from: the engine's own scenes, or the command that serves the page.
+// The sources of scene texts: the shipped scenes of the engine, and the command that serves the page.
 
 import { type Shipped, shippedScenes } from '../engine';
 
@@ -21,9 +21,9 @@ export function fromShipped({ name, text }: Shipped): SceneSource {
 /** The header in which `qhat play` names the file that /scene holds, percent-encoded. */
 export const FILE_NAME_HEADER = 'x-qhat-scene-name';
 
-/** The scene that `qhat play SCENE` was given; null where another program serves the page. */
+/** The scene of `qhat play SCENE`; null if another program serves the page. */
 export async function sceneFromCommand(): Promise<SceneSource | null> {
-  // The command serves on the loopback address only; asking any other server would only put a 404 in its log.
+  // The command serves on the loopback address only. A request to another server would only add a 404 to its log.
   if (!['127.0.0.1', 'localhost', '[::1]'].includes(location.hostname)) return null;
   try {
     const response = await fetch(new URL('scene', document.baseURI), { cache: 'no-store' });

@@ -21,22 +21,22 @@ export type Phase = 'starting' | 'ready' | 'failed';
 
 export class Session {
   phase = $state<Phase>('starting');
-  /** why there is no scene, in the engine's words */
+  /** why there is no scene: the message of the engine */
   failure = $state<string | null>(null);
   scenes = $state.raw<Shipped[]>([]);
   integrators = $state.raw<IntegratorFacts[]>([]);
   source = $state.raw<SceneSource | null>(null);
   structure = $state.raw<Structure | null>(null);
   controls = $state.raw<Controls | null>(null);
-  /** the controls as the scene sets them: where the reset of one control goes back to */
+  /** the controls as the scene sets them: the values to which a control is reset */
   original = $state.raw<Controls | null>(null);
-  /** the control that the engine refused last, and its words */
+  /** the control that the engine refused last, and the message */
   refusal = $state.raw<{ key: string; message: string } | null>(null);
   run: Run | null = null;
 
   /** The run is about to end; runs beside it end with it. */
   readonly closing = new Signal();
-  /** The engine broke: its memory is not to be touched again. */
+  /** The engine failed: its memory must not be used again. */
   readonly crashed = new Signal();
   /** Another scene is open, at its start. */
   readonly opened = new Signal();
@@ -50,7 +50,7 @@ export class Session {
     return downOf(this.original?.gravity ?? [], this.structure?.dimension ?? 2);
   }
 
-  /** Whether an integrator holds the constraints by projection, and so uses none of ks, kd, ε and e. */
+  /** Whether an integrator holds the constraints by projection and therefore ignores ks, kd, ε and e. */
   projects(integrator: Controls['integrator'] | undefined): boolean {
     return this.integrators.some(({ name, projects }) => projects && name === integrator);
   }
@@ -101,7 +101,7 @@ export class Session {
     this.opened.send();
   }
 
-  /** An error that no code foresaw: the page says it and stays usable. */
+  /** An unexpected error: the page shows it and stays usable. */
   crash(error: unknown): void {
     this.run = null;
     this.crashed.send();
@@ -150,7 +150,7 @@ export class Session {
   }
 }
 
-/** The words of an error. */
+/** The message of an error. */
 export function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

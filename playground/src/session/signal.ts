@@ -1,4 +1,4 @@
-// How a part of the page tells the parts above it that something happened, without importing them.
+// A signal: a part of the page announces a change to the parts that listen, without importing them.
 
 /** Calls its listeners in the order in which they were added. */
 export class Signal<Values extends unknown[] = []> {

@@ -4,7 +4,7 @@ import type { Hand } from '../session/hand';
 import type { Stage } from './stage';
 
 export class ArrowHand {
-  /** where the particle was when the keys took it, in m, and where the hand is, in px */
+  /** the position of the particle when the keys grabbed it, in m, and the position of the hand, in px */
   private pull: { anchor: number[]; x: number; y: number } | null = null;
 
   constructor(
@@ -12,7 +12,7 @@ export class ArrowHand {
     private readonly stage: Stage,
   ) {}
 
-  /** Moves the hand by so many px; the first move takes hold of the particle. */
+  /** Moves the hand by a distance in px; the first move grabs the particle. */
   move(particle: number, dx: number, dy: number): void {
     const { camera } = this.stage;
     if (!this.pull) {

@@ -1,4 +1,4 @@
-// The brush that every layer and every shape is drawn with, and how it finds points on the screen.
+// The brush that draws every layer and every shape; it also projects points to the screen.
 
 import type { Shape } from '../engine';
 import type { Camera } from './camera';

@@ -49,7 +49,7 @@ export class Camera {
       Math.cos(this.pitch),
       Math.sin(this.pitch),
     ];
-    // built with y up, then turned where the scene has z up
+    // made for y up, then turned if z is up in the scene
     this.right = this.oriented([cy, 0, -sy]);
     this.up = this.oriented([-sy * sp, cp, -cy * sp]);
     this.towards = this.oriented([sy * cp, sp, cy * cp]);
@@ -68,7 +68,7 @@ export class Camera {
     return [(left + this.width - right) / 2, (top + this.height - bottom) / 2];
   }
 
-  /** Screen x, y in px and depth in m (towards the viewer) of point i of a flat array of so many numbers a point. */
+  /** Screen x, y in px and depth in m (towards the viewer) of point i of a flat array. */
   project(
     flat: ArrayLike<number>,
     i: number,
@@ -102,7 +102,7 @@ export class Camera {
     }
   }
 
-  /** Zooms about a screen point: the point of the scene under it stays there. */
+  /** Zooms about a screen point: the point of the scene under this point does not move. */
   zoom(factor: number, sx: number, sy: number): void {
     const scale = Math.min(LARGEST_SCALE, Math.max(SMALLEST_SCALE, this.scale * factor));
     const [mx, my] = this.middle;
@@ -127,7 +127,7 @@ export class Camera {
         (k) => (FIT[d] * Math.max(40, room[k])) / Math.max(extent[k], 1e-9 * (extent[0] + extent[1]), 1e-12),
       ),
     );
-    // one lone particle has no extent: then a metre is a fifth of the canvas
+    // a single particle has no extent: a metre is then a fifth of the canvas
     const lone = Math.max(extent[0], extent[1]) < 1e-12;
     this.scale = lone
       ? Math.max(40, Math.min(...room)) / 5

@@ -17,7 +17,7 @@ import { pick } from './pick';
 import type { Picture, Selection } from './picture';
 import { Sizes } from './sizes';
 
-/** Back to front. */
+/** The layers, from back to front. */
 const LAYERS: readonly Layer[] = [
   drawGrid,
   drawGhost,
@@ -30,7 +30,7 @@ const LAYERS: readonly Layer[] = [
   drawScale,
 ];
 
-/** Device pixels a CSS pixel at most: more than two are hard to see and slow on a phone. */
+/** Most device pixels for each CSS pixel: more than two are hard to see, and slow on a phone. */
 const LARGEST_PIXEL_RATIO = 2;
 
 export class CanvasView {
@@ -46,7 +46,7 @@ export class CanvasView {
     this.context = context;
   }
 
-  /** Fits the bitmap to the element; true where it changed. */
+  /** Fits the bitmap to the element; true if its size changed. */
   resize(camera: Camera): boolean {
     const { clientWidth, clientHeight } = this.canvas;
     const ratio = Math.min(LARGEST_PIXEL_RATIO, globalThis.devicePixelRatio || 1);
@@ -63,7 +63,7 @@ export class CanvasView {
     return moved;
   }
 
-  /** The background alone, where there is no scene. */
+  /** Draws the background only, if there is no scene. */
   empty(camera: Camera): void {
     this.clear(camera);
     drawGrid(this.brush(camera, new Float64Array(0)));

@@ -82,10 +82,10 @@ export function traceSegment(
   context.lineTo(screen[3 * b], screen[3 * b + 1]);
 }
 
-/** Points of a chain nearer than this to the last point drawn are left out, px: anti-aliasing hides the difference. */
+/** Least distance of drawn points of a chain, px. Nearer points are left out; anti-aliasing hides the difference. */
 const FINEST = 0.75;
 
-/** Rods as lines; rods that follow one another are one line, its points no finer than a screen shows. */
+/** Rods as lines. Rods that follow one another make one line, with no more points than a screen shows. */
 export function traceChains(
   context: CanvasRenderingContext2D,
   screen: Float64Array,

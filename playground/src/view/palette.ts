@@ -1,4 +1,4 @@
-// The colours that canvas, plots and matrices draw with, read from the variables of style/colours.css once a theme.
+// The colours of canvas, plots and matrices, read from the variables of style/colours.css once for each theme.
 
 /** Each colour of the palette and the variable that holds it. */
 const VARIABLES = {
@@ -56,7 +56,7 @@ export function readPalette(): Palette {
   return palette;
 }
 
-/** Which of the tension colours a link has on a scale of `limit` newtons each way. */
+/** The index of the tension colour of a link, on a scale of `limit` newtons each way. */
 export function tensionStep(tension: number, limit: number): number {
   const middle = (TENSION_STEPS - 1) / 2;
   if (!Number.isFinite(tension) || !(limit > 0)) return middle;

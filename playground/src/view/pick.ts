@@ -3,7 +3,7 @@
 import type { Structure } from '../engine';
 import type { Selection } from './picture';
 
-/** The nearest particle in reach, else the nearest link; x, y and reach in px. */
+/** The nearest particle within reach, else the nearest link; x, y and reach in px. */
 export function pick(
   structure: Structure,
   screen: Float64Array,
@@ -19,7 +19,7 @@ export function pick(
     if (away < nearest) [nearest, best] = [away, { kind: 'particle', index: i }];
   }
   if (best) return best;
-  // a link is thin: a smaller reach keeps empty canvas empty
+  // a link has a smaller reach, so that a click beside it counts as empty canvas
   nearest = reach / 2;
   for (const [index, { particles }] of structure.links.entries()) {
     const away = distanceToSegment(x, y, screen, 3 * particles[0], 3 * particles[1]);

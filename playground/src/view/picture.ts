@@ -1,4 +1,4 @@
-// The data of one drawn frame. The layers read it and keep nothing.
+// The data of one drawn frame. The layers only read it.
 
 import type { Shape, Structure } from '../engine';
 import type { Held } from '../session/hand';
@@ -20,13 +20,13 @@ export interface Picture {
   shapes: Shape[];
   /** the direction of gravity, a unit vector */
   down: number[];
-  /** N, one per link */
+  /** N, one for each link */
   tension: Float64Array;
   /** N at the ends of the colour scale */
   tensionLimit: number;
   /** positions of the comparison run, or null */
   ghost: Float64Array | null;
-  /** the comparison run came to its end */
+  /** whether the comparison run has stopped */
   ghostStopped: boolean;
   selection: Selection;
   hover: Selection;

@@ -2,9 +2,9 @@
 
 import type { Page } from '../page';
 
-/** The largest distance from a particle that still counts as on it, px: a finger covers the particle. */
+/** The largest distance at which a press counts as on a particle, px: a finger is wider than a particle. */
 const REACH = { mouse: 12, touch: 28 };
-/** Below this a press is a click, px. */
+/** Movement below which a press is a click, px. */
 const CLICK = 4;
 /** A drag across 300 px turns a 3D view by about a third of a circle. */
 const ORBIT_PER_PIXEL = 0.007;
@@ -97,7 +97,7 @@ export class Pointer {
     const before = Math.hypot(press.x - other.x, press.y - other.y);
     const after = Math.hypot(x - other.x, y - other.y);
     if (before > 1) this.page.stage.zoom(after / before, other.x, other.y);
-    // half of the movement: the other finger brings the other half
+    // half of the movement: the events of the other finger add the other half
     this.page.stage.pan((x - press.x) / 2, (y - press.y) / 2);
   }
 

@@ -1,4 +1,4 @@
-// How large particles and links are drawn, so that a crowded scene and a zoomed-out one stay readable.
+// The sizes of particles and links on the screen, chosen so that crowded and zoomed-out scenes stay readable.
 
 import type { Structure } from '../engine';
 import { isRod } from '../session/links';
@@ -13,23 +13,23 @@ export const LEAST_RADIUS = 1.5;
 const LARGEST_RADIUS = 18;
 
 export class Sizes {
-  /** of every particle, px */
+  /** the radius of every particle, px */
   radii = new Float64Array(0);
   /** width of a link, px */
   link = 3.5;
   /** half the width of a spring's zig-zag, px */
   coil = 5;
-  /** true where rods are so short on the screen that the smallest particles would touch and hide every rod */
+  /** true if rods are so short on the screen that the smallest particles would touch and hide every rod */
   crowded = false;
   private structure: Structure | null = null;
-  /** m; NaN where there are no rods */
+  /** the mean length of a rod, m; NaN without rods */
   private meanRod = Number.NaN;
   /** the largest radius of a particle of usual mass, px */
   private most = 0;
 
   /**
    * Fits the sizes to a scene at a scale in px/m. Radii grow with the cube root of the mass, as balls of one density
-   * do; scenes with many particles get smaller ones, and particles never hide the rods between them.
+   * do; scenes with many particles or short rods get smaller particles.
    */
   fit(structure: Structure, scale: number): void {
     const changed = this.structure !== structure;

@@ -1,4 +1,4 @@
-// The canvas, its camera and the drawing loop: lets time go on, then draws the state.
+// The stage: the canvas, its camera and the drawing loop, which runs the steps that are due and draws the state.
 
 import type { Simulation } from '../engine';
 import type { Page } from '../page';
@@ -9,10 +9,10 @@ import { type Box, Camera } from './camera';
 import { CanvasView } from './canvas';
 import type { Arrow, Picture, Selection } from './picture';
 
-/** Steps longer than this are shown as jumps, s; between shorter steps the drawing slides from state to state. */
+/** Longest step between whose states the drawing interpolates, s; longer steps are shown as jumps. */
 const LONGEST_SMOOTHED_STEP = 1 / 30;
 
-/** Factor a frame of the largest tension: half of a peak is left after 140 frames, about two seconds. */
+/** Factor of the largest tension in each frame: half of a peak is left after 140 frames, about two seconds. */
 const FADE = 0.995;
 
 /** The parts of the page that the stage reads. */
@@ -24,12 +24,12 @@ export class Stage {
   hover: Selection = null;
   /** ends of the colour scale, N */
   tensionLimit = 1;
-  /** the largest tension of late, N */
+  /** the largest recent tension, N: a maximum that decays */
   private largest = 0;
   onTensionLimit: (limit: number) => void = () => {};
   private box: Box | null = null;
   private request = 0;
-  /** true until a person moves the view: only then may it follow a changed window */
+  /** true until a person moves the view: until then the view is fitted to a changed window */
   private fitted = true;
 
   constructor(
@@ -145,14 +145,14 @@ export class Stage {
     this.view.draw(picture, this.camera);
   }
 
-  /** How far the drawing is behind the state, s. */
+  /** The time by which the drawing is behind the state, s. */
   private behind(): number {
     const { session, playback } = this.parts;
     const h = session.controls?.h ?? 0;
     return h > LONGEST_SMOOTHED_STEP || !playback.running ? 0 : (1 - playback.fraction) * h;
   }
 
-  /** Positions part of a step back along the velocity, so that steps and screen frames out of beat do not judder. */
+  /** Positions a part of a step back along the velocity: motion is even although steps and frames do not coincide. */
   private smoothed(simulation: Simulation): Float64Array {
     const positions = simulation.positions();
     const back = this.behind();
@@ -167,7 +167,7 @@ export class Stage {
     try {
       return run!.simulation.tension();
     } catch {
-      // a state at which λ does not exist has no tension to colour; the readings say so in words
+      // a state at which λ does not exist has no tension to colour; the readings show a message
       return new Float64Array(structure!.links.length).fill(Number.NaN);
     }
   }

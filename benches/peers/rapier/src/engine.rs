@@ -1,10 +1,10 @@
-// Included once for the plane and once for space: `super::rapier` is Rapier of that dimension, D its number.
+// Included once for the plane and once for space: `super::rapier` is Rapier for D dimensions.
 
 use super::rapier::prelude::*;
 use super::{D, vector};
 use crate::{Engine, Setting, Workload};
 
-/// As stiff as a spring of Rapier can be made: its error is taken out whole in every solver iteration. [N/m]
+/// The largest useful stiffness of a spring in Rapier [N/m]: every solver iteration corrects the whole error.
 const STIFFNESS: f64 = 1e15;
 
 /// A motion in Rapier.

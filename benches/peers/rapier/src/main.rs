@@ -1,5 +1,5 @@
 //! Rapier in f64, in the plane and in space. The same protocol as benches/peers/python/adapter.py:
-//! `rapier-peer WORKLOAD.json LIMIT OUTPUT key=value …` prints CPU seconds of the stepping and why the run ended early.
+//! `rapier-peer WORKLOAD.json LIMIT OUTPUT key=value …` prints CPU seconds of the steps and the reason of an early end.
 //!
 //! ```text
 //! substeps     steps a frame
@@ -68,10 +68,10 @@ mod space {
     }
 }
 
-/// Of a run that takes under a second the quickest of this many counts.
+/// Number of runs if a run takes under a second; the fastest counts.
 const RUNS: usize = 3;
 
-/// Particles, rods and gravity, as the neutral file has them.
+/// Particles, rods and gravity of the neutral file.
 #[derive(Deserialize)]
 pub struct Workload {
     dimension: usize,
@@ -85,7 +85,7 @@ pub struct Workload {
     lengths: Vec<f64>,
 }
 
-/// The words key=value.
+/// The arguments key=value.
 pub struct Setting(HashMap<String, String>);
 
 impl Setting {
@@ -144,7 +144,7 @@ fn simulate(workload: &Workload, engine: &mut dyn Engine, limit: f64) -> (f64, S
             return (cpu, "diverged".into(), bytes);
         }
         bytes.extend(positions.iter().chain(&velocities).flat_map(|number| number.to_le_bytes()));
-        // A tenth of the limit is enough to see that a run will take one and a half of it.
+        // After a tenth of the limit it is clear whether a run will take one and a half times the limit.
         let estimate = cpu / count as f64 * workload.frames as f64;
         if count < workload.frames && (cpu > limit || (cpu > limit / 10.0 && estimate > 1.5 * limit)) {
             return (cpu, format!("too slow: about {estimate:.0} s of CPU time"), bytes);

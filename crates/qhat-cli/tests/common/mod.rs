@@ -1,4 +1,4 @@
-//! Runs the built command the way a person does, in a folder of its own.
+//! Runs the built command as a user does, in a folder of its own.
 
 pub(crate) mod npz;
 
@@ -38,7 +38,7 @@ constraints = [
 ]
 "#;
 
-/// A folder to work in, gone at the end of the test.
+/// A folder to work in, which is removed at the end of the test.
 pub(crate) struct Folder(TempDir);
 
 impl Folder {
@@ -80,7 +80,7 @@ impl Folder {
         self.qhat_reading("", arguments)
     }
 
-    /// The same with a text on stdin.
+    /// Runs the command with a text on stdin.
     pub(crate) fn qhat_reading(&self, stdin: &str, arguments: &[&str]) -> Ran {
         let mut command = Command::new(QHAT);
         command.current_dir(self.root()).args(arguments);
@@ -91,7 +91,7 @@ impl Folder {
     }
 }
 
-/// What a command did.
+/// The exit code and the output of a command.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: i32,
@@ -108,14 +108,15 @@ impl Ran {
         }
     }
 
-    /// The same, having ended well and said nothing on stderr.
+    /// This outcome, after a check that the exit code is 0 and stderr is empty.
     #[track_caller]
     pub(crate) fn well(self) -> Self {
         assert_eq!((self.code, self.stderr.as_str()), (0, ""), "{}", self.stdout);
         self
     }
 
-    /// The same, having refused its input with a message that has these words in it, and never with a panic.
+    /// This outcome, after a check that the input was refused with a message that contains these words, without a
+    /// panic.
     #[track_caller]
     pub(crate) fn refused(self, words: &str) -> Self {
         assert_eq!(self.code, 2, "{self:?}");
@@ -124,7 +125,7 @@ impl Ran {
         self
     }
 
-    /// What it printed, as JSON.
+    /// The output on stdout, as JSON.
     #[track_caller]
     pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}", self.stdout))

@@ -1,4 +1,4 @@
-//! Reads NPZ files again, by the description of the format and not by the code that wrote them.
+//! Reads NPZ files by the description of the format, independently of the code that writes them.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -15,7 +15,7 @@ pub(crate) struct Array {
 }
 
 impl Array {
-    /// Its numbers; they must be little-endian float64.
+    /// The numbers of the array; they must be little-endian float64.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         assert_eq!(self.descr, "<f8");
         let numbers: Vec<f64> = self.data.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
@@ -23,7 +23,7 @@ impl Array {
         numbers
     }
 
-    /// Its texts; they must be little-endian UTF-32 of one length, filled up with zeros.
+    /// The texts of the array; they must be little-endian UTF-32 of one length, padded with zeros.
     pub(crate) fn texts(&self) -> Vec<String> {
         let width: usize = self.descr.strip_prefix("<U").unwrap().parse().unwrap();
         assert_eq!(self.data.len(), 4 * width * self.shape.iter().product::<usize>());

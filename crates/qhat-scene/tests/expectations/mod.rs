@@ -1,11 +1,11 @@
-//! Runs a scene and tells which of its expectations do not hold; what each means is in docs/scene-file.md.
+//! Runs a scene and returns the expectations that do not hold; docs/scene-file.md describes each expectation.
 
 use qhat::{Event, EventKind, Simulation};
 use qhat_scene::{AtEnd, Axis, Expect, Scene, SpeedAtEnd};
 use std::collections::BTreeSet;
 
-/// Particles up to which lengths are held for long; a larger scene, at tens of milliseconds a frame, for its own
-/// duration.
+/// Largest number of particles of a scene whose lengths are checked over a long run. A larger scene takes tens of
+/// milliseconds a frame and runs for its own duration.
 const MOST_FOR_LONG: usize = 2000;
 
 /// Every expectation that fails, in words.
@@ -130,7 +130,8 @@ fn check_broken(broken: &[Event], expect: &Expect, failures: &mut Vec<String>) {
     }
 }
 
-/// max |C| over the row's own scale over the rigid rows at this frame; 0 where nobody asks, as it costs a solve.
+/// The largest |C| of the rigid rows at this frame, each relative to the scale of its row; 0 without an expectation
+/// about it, because it costs a solve.
 fn residual_now(simulation: &mut Simulation, expect: &Expect) -> f64 {
     if expect.max_residual.is_none() {
         return 0.0;
@@ -141,12 +142,11 @@ fn residual_now(simulation: &mut Simulation, expect: &Expect) -> f64 {
     rigid.map(|row| residual[row].abs() / system.row_scales()[row]).fold(0.0, f64::max)
 }
 
-/// A rise of the energy that counts, relative to the most that moves to and fro between its kinds. Rods are held to
-/// 1e-10 of their length, so that a projection may lift a weight by that much; ten times as much is more than that
-/// explains.
+/// Least rise of the energy that counts as an error, relative to the largest exchange between T and V. Rods are held to
+/// 1e-10 of their length, so a projection may lift a weight by that much. Ten times as much has another cause.
 const RISE: f64 = 1e-9;
 
-/// Where the watched coordinates were, frame by frame.
+/// The watched coordinates, frame by frame.
 #[derive(Default)]
 struct Course {
     times: Vec<f64>,
@@ -193,7 +193,7 @@ impl Course {
         }
     }
 
-    /// The largest rise of T + V from one frame to the next, over the largest T or change of V, and when it ended.
+    /// The largest rise of T + V from one frame to the next, relative to the largest T or change of V, and its time.
     fn largest_rise(&self) -> Option<(f64, f64)> {
         let bounds = |part: fn(&(f64, f64)) -> f64| {
             let values = self.energies.iter().map(part);

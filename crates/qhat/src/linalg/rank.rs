@@ -1,5 +1,5 @@
 //! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and
-//! the rank is the number of pivots before they fall to the roundoff of what was subtracted. Source: Higham, Analysis
+//! the rank is the number of pivots above the roundoff of the elimination. Source: Higham, Analysis
 //! of the Cholesky decomposition of a semi-definite matrix (1990).
 
 /// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is

@@ -172,7 +172,7 @@ proptest! {
             (pivot, x)
         };
         let (one, other) = (solve(&blocked), solve(&single));
-        // The bounds are those of the test above.
+        // The reason for the bounds is in `sparse_and_dense_solve_alike`.
         prop_assert!((one.0 - other.0).abs() < 1e-13 * one.0, "{} {}", one.0, other.0);
         for i in 0..n {
             prop_assert!((one.1[i] - other.1[i]).abs() < 1e-12, "x[{i}]: {} and {}", one.1[i], other.1[i]);

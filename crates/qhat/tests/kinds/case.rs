@@ -1,4 +1,5 @@
-//! What a case is: a kind of constraint, the same typed as expressions, and where the two are compared.
+//! A case: a kind of constraint, the same constraint written as expressions (its twin), and the states in which the two
+//! are compared.
 
 use crate::systems::random::{Random, dimension};
 use std::sync::LazyLock;
@@ -10,7 +11,7 @@ use qhat::{
 
 pub(crate) static P: LazyLock<[ParticleId; 6]> = LazyLock::new(|| std::array::from_fn(crate::systems::id));
 
-/// Where the particles p0 … p6 start. In two dimensions without z.
+/// The start positions of the particles p0 … p6; z is ignored in two dimensions.
 pub(crate) const PLACES: [[f64; 3]; 7] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.2],
@@ -21,24 +22,24 @@ pub(crate) const PLACES: [[f64; 3]; 7] = [
     [4.0, 0.0, 0.0],
 ];
 
-/// States in which the rows of a case are looked at.
+/// The states in which the rows of a case are compared.
 #[derive(Clone, Copy, PartialEq)]
 enum Tried {
-    /// The start, with random velocities: beside a wire in space its rows are not exact.
+    /// The start, with random velocities. For a wire in space, whose rows are exact only on the wire.
     AtStart,
     /// Up to 0.1 m from the start along each axis.
     Nearby,
-    /// Nearby, and with every second state anywhere within 2 m of the origin.
+    /// Half of the states as in `Nearby`, the others anywhere within 2 m of the origin.
     Anywhere,
 }
 
-/// A kind of constraint and its twin, the same as expressions.
+/// A kind of constraint, and its twin: the same constraint as expressions.
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) d: usize,
-    /// Particles that start elsewhere than in `PLACES`, so that the constraints hold.
+    /// Particles that do not start at their position in `PLACES`, so that the constraints hold.
     at: &'static [(usize, [f64; 3])],
-    /// The constraints, driven by `Clock::s` where they can be.
+    /// The constraints, driven by `Clock::s` if their kind can be driven.
     make: fn(&Clock) -> Vec<Constraint>,
     /// The residuals of the twin. S makes a residual zero at the start, and then follows `drive`. The kind has the S of
     /// the last residual; where none has an S, it is `drive` alone.
@@ -46,11 +47,11 @@ pub(crate) struct Case {
     /// A function of t, 0 at the start.
     drive: &'static str,
     tried: Tried,
-    /// Whether the rows of the twin are those of the kind; otherwise they hold the same places in other units.
+    /// Whether the rows of the twin equal the rows of the kind. Otherwise they hold the same positions in other units.
     pub(crate) same_rows: bool,
-    /// Whether C counts but for whole turns.
+    /// Whether C is defined up to whole turns.
     pub(crate) turns: bool,
-    /// Whether it holds C = 0 over a motion, in two ways that can be compared.
+    /// Whether the kind and its twin hold C = 0 over a motion, so that their motions can be compared.
     pub(crate) moves: bool,
     /// Whether it acts on one side only. Away from a run its rows are inactive, and terms show nothing of them.
     pub(crate) one_sided: bool,
@@ -68,7 +69,7 @@ pub(crate) const fn driven(
     Case { name, d, at, make, twin, drive, tried, same_rows: true, turns: false, moves: true, one_sided: false }
 }
 
-/// A case that nothing drives, but for what its own expressions of t do.
+/// A case that is not driven, except by expressions of t in the case itself.
 pub(crate) const fn twin(
     name: &'static str,
     d: usize,
@@ -151,7 +152,7 @@ impl Case {
         builder.build().unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
-    /// The particles at the start, each as `change` makes it.
+    /// The particles at the start, each changed by `change`.
     pub(crate) fn particles(&self, change: impl Fn(usize, Particle) -> Particle) -> SystemBuilder {
         let mut builder = System::builder(dimension(self.d));
         for (i, x) in self.positions().chunks(self.d).enumerate() {
@@ -187,12 +188,12 @@ impl Case {
 /// A time after the start at which no drive of the table is at rest [s].
 pub(crate) const LATER: f64 = 0.37;
 
-/// Particles by number, any of them.
+/// The particles with these numbers.
 pub(crate) fn mass(i: usize) -> f64 {
     1.0 + 0.3 * i as f64
 }
 
-/// What drives a case, seen from some time after the start.
+/// The drive of a case, with t counted from some time after the start.
 pub(crate) struct Clock {
     start: f64,
     drive: &'static str,
@@ -217,7 +218,7 @@ impl Clock {
         ExpressionConstraint::new(parse(&self.text(text), Purpose::Constraint, self.d), &q).into()
     }
 
-    /// The text with S put in and t counted from later on.
+    /// The text with S inserted and t counted from a later time.
     fn text(&self, text: &str) -> String {
         let text = text.replace('S', &format!("({:?} + {})", self.start, self.drive));
         if self.later == 0.0 {
@@ -244,7 +245,7 @@ pub(crate) fn parse(text: &str, purpose: Purpose, d: usize) -> Expression {
     Expression::parse(text, &scope).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-/// C_t of every row: what Ċ has beyond J q̇.
+/// C_t of every row: Ċ − J q̇.
 pub(crate) fn slopes_in_time(terms: &Terms) -> Vec<f64> {
     let moved = crate::systems::dense::multiply(&terms.jacobian.to_dense(), &terms.velocities);
     terms.residual_rate.iter().zip(moved).map(|(rate, moved)| rate - moved).collect()

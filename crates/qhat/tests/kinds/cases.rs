@@ -1,5 +1,5 @@
-//! The table of cases: every kind of constraint in the plane and in space, driven and not, each with what its rows are
-//! as expressions. It is longer than other files, and reads best in one piece.
+//! The table of cases: every kind of constraint in the plane and in space, driven and not, each with its rows as
+//! expressions. The file is longer than others because a table is easier to read in one piece.
 
 use super::case::{Case, Clock, P, PLACES, driven, mass, parse, twin};
 use qhat::{
@@ -487,7 +487,7 @@ pub(crate) const CASES: &[Case] = &[
             rods.into_iter().map(|[a, b]| Distance::new(P[a], P[b], length(a, b)).into()).collect()
         },
         &[
-            // Nine of the ten distances, among them one that the rods leave out.
+            // Nine of the ten distances, including the distance for which there is no rod.
             "dist(p0, p1) - S",
             "dist(p0, p2) - S",
             "dist(p1, p2) - S",

@@ -1,4 +1,4 @@
-//! Motion under single kinds of constraint that is known in closed form, or by other constraints.
+//! Motion under a single kind of constraint, against closed forms or against the motion under other constraints.
 
 use super::motion::{curve, driven, system};
 use crate::systems::dense::assert_close;
@@ -9,7 +9,7 @@ use qhat::{
 };
 use std::f64::consts::PI;
 
-/// The same motion by other constraints, to what dop853 leaves at 1e-12 a substep, over a second.
+/// The same motion with other constraints over a second, to the error of dop853 at 1e-12 a substep.
 #[test]
 fn the_same_held_otherwise_moves_the_same() {
     let run = |(system, state): (System, State)| {
@@ -39,7 +39,8 @@ fn the_same_held_otherwise_moves_the_same() {
     same("a line as two planes", run(line), run(planes));
 }
 
-/// A bead on a cycloid swings with 2π √(4R/g) whatever its amplitude; after half of it, it is on the other side.
+/// A bead on a cycloid swings with the period 2π √(4R/g) at every amplitude; after half a period it is on the other
+/// side.
 #[test]
 fn a_cycloid_is_isochronous() {
     let period = 2.0 * PI * (4.0 / G).sqrt();
@@ -56,8 +57,8 @@ fn a_cycloid_is_isochronous() {
     }
 }
 
-/// A free particle on a rod that turns at ω goes out as r cosh ω t; the drive does the work m ω² r² sinh²(ω t), all
-/// that it gains.
+/// A particle that slides freely on a rod, which turns at ω, moves outwards as r cosh ω t. Its whole energy is the work
+/// of the drive, m ω² r² sinh²(ω t).
 #[test]
 fn a_bead_on_a_turning_rod_goes_out_as_cosh() {
     let mut builder = System::builder(Dimension::Two);
@@ -72,7 +73,7 @@ fn a_bead_on_a_turning_rod_goes_out_as_cosh() {
     assert_close("x", simulation.state().positions()[0], radius * libm::cos(2.0), 1e-9);
     assert_close("y", simulation.state().positions()[1], radius * libm::sin(2.0), 1e-9);
     let sinh = libm::sinh(2.0);
-    // Half of the work is the speed outwards, half the faster turn.
+    // Half of the work is the speed outwards, and half the faster rotation.
     assert_close("work", simulation.state().work().drives, sinh * sinh, 1e-8);
 }
 
@@ -96,13 +97,13 @@ fn a_slider_moves_and_accelerates_as_its_crank_says() {
         let s = (l * l - r * r * sine * sine).sqrt();
         let x = r * cosine + s;
         let bend = r * (cosine * cosine - sine * sine) / s + libm::pow(r / s, 3.0) * libm::pow(sine * cosine, 2.0);
-        // No freedom is left: what projections leave, here times ω² and the like.
+        // No degree of freedom is left. The error is the residual of the projections, here times ω² and the like.
         assert_close("x", simulation.state().positions()[2], x, 1e-10);
         assert_close("acceleration", simulation.terms().accelerations[2], -r * omega * omega * (cosine + bend), 1e-9);
     }
 }
 
-/// Down a cycloid to its lowest point a bead takes π √(R/g), and no way is faster: down the straight line to the same
+/// A bead takes π √(R/g) down a cycloid to its lowest point, and no path is faster: down the straight line to the same
 /// point (π R, −2 R) it takes √((4 + π²) R/g), 1.19 times as long. As the cycloid begins with a cusp, the bead on it is
 /// met where s = √(g/R) t = 0.5.
 #[test]
@@ -129,8 +130,8 @@ fn a_cycloid_is_faster_than_the_straight_line() {
     arrive([0.0; 2], [0.0; 2], straight, (4.0 + PI * PI).sqrt() / rate);
 }
 
-/// Without gravity a bead keeps its speed v round every corner, so that it is where s = v t; the wire presses with m
-/// v²/r on an arc and not at all between.
+/// Without gravity a bead keeps its speed v round every corner, so it is at s = v t. The force of the wire is m v²/r on
+/// an arc and zero between arcs.
 #[test]
 fn a_bead_keeps_its_speed_round_corners() {
     let (r, v) = (0.25, 2.0);
@@ -153,7 +154,7 @@ fn a_bead_keeps_its_speed_round_corners() {
             for _ in 0..frames {
                 let report = simulation.step().unwrap();
                 attempts += report.substeps + report.rejected;
-                // A few joints at the tolerance each; the force is 2 v/r = 16 times as sensitive to v.
+                // The error of a few joints, each at the tolerance; the force is 2 v/r = 16 times as sensitive to v.
                 assert_close("speed", length(simulation.state().velocities()), v, tolerance);
                 let force = length(&simulation.terms().constraint_forces);
                 let expected = if force > 8.0 { v * v / r } else { 0.0 };

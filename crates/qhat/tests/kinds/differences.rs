@@ -1,4 +1,5 @@
-//! The rows of every kind against differences: Ċ, J and C_t against those of C, γ against those of Ċ along the motion.
+//! The rows of every kind against differences: Ċ, J and C_t against differences of C, γ against differences of Ċ along
+//! the motion.
 
 use super::can_be_driven;
 use super::case::{LATER, slopes_in_time};
@@ -46,7 +47,7 @@ fn every_kind_agrees_with_differences() {
             };
             let terms = at(q.clone(), 0.0);
             let J = terms.jacobian.to_dense();
-            // A state near a place where C has no gradient would put the differences to the test, not the rows.
+            // Near a position where C has no gradient the differences would be inaccurate, not the rows.
             assert!(largest(&J) < 20.0, "{}: {J:?}", case.name);
 
             check("Ċ", &terms.residual_rate, &derivative(|tau| at(along(&q, &v, tau), tau).residual));
@@ -61,7 +62,7 @@ fn every_kind_agrees_with_differences() {
             if !case.is_driven() {
                 // Roundoff of a sum over a particle's coordinates.
                 assert!(largest(&Ct) < 1e-13, "{}: Ċ is not J q̇: {Ct:?}", case.name);
-                // J moves with q while q̇ is kept.
+                // J changes with q while q̇ is constant.
                 let J_rate = derivative(|tau| at(along(&q, &v, tau), 0.0).jacobian.to_dense());
                 check("γ = J̇ q̇", &terms.acceleration_bias, &multiply(&J_rate, &v));
             }
@@ -69,7 +70,8 @@ fn every_kind_agrees_with_differences() {
     }
 }
 
-/// A C_t that is zero in every case agrees with every difference, whatever its sign.
+/// Every kind that can be driven has a case in which C_t is not zero. Otherwise a wrong sign of C_t would agree with
+/// the differences.
 #[test]
 fn every_kind_that_can_be_driven_is_driven_in_some_case() {
     let mut fastest: BTreeMap<&str, f64> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Every kind against its twin, the same typed as expressions: the same rows, and the same motion.
+//! Every kind against its twin, the same constraint written as expressions: the same rows and the same motion.
 
 use super::case::{Case, LATER, P, slopes_in_time, twin};
 use super::cases::{CASES, KINDS};
@@ -65,7 +65,7 @@ fn one_sided_kinds_have_the_margins_of_their_expressions() {
 /// to measure in.
 fn thrown(case: &Case, constraints: Vec<Constraint>, integrator: Integrator) -> Simulation {
     let (d, q) = (case.d, case.positions());
-    // Any that differ.
+    // Any velocities that differ.
     let v = |i: usize| (0..d).map(|k| 0.2 * ((3 * i + 5 * k + 1) % 7) as f64 - 0.6).collect::<Vec<f64>>();
     let mut builder = case.particles(|i, particle| particle.with_velocity(v(i)));
     for (i, a) in P[..5].iter().enumerate() {
@@ -120,8 +120,8 @@ fn every_kind_moves_as_its_expressions() {
     }
 }
 
-/// A gradient that vanishes exactly where it must hold is held by feedback alone, as the source does: no motion that a
-/// tolerance could follow, but the same arithmetic, over 50 steps of roundoff.
+/// A constraint whose gradient vanishes where C = 0 is held by feedback only, as in the source. Its motion does not
+/// converge with the tolerance, but the arithmetic of both is the same: 50 steps of roundoff.
 #[test]
 fn the_scalar_nail_moves_as_its_expression() {
     let make = |_: &_| vec![Nail { form: NailForm::Scalar, ..Nail::new(P[0], [0.0; 3]) }.into()];

@@ -1,4 +1,4 @@
-//! Every kind of constraint, in one table of cases and one file for each question that is asked of all of them.
+//! Every kind of constraint: one table of cases, and one file for each question about all kinds.
 
 mod case;
 mod cases;

@@ -9,7 +9,7 @@ use qhat::{
     Particle, ParticleId, Purpose, Relation, Settings, Simulation, State, System,
 };
 
-/// The case at rest at its start, on particles that springs keep apart and together; p5 is held.
+/// The case at rest at its start, with particles held near each other by springs; p5 is fixed.
 fn moving(case: &Case) -> (System, State) {
     let (d, q) = (case.d, case.positions());
     let mut builder = case.particles(|i, particle| if i == 5 { particle.fixed() } else { particle });
@@ -31,7 +31,7 @@ fn moving(case: &Case) -> (System, State) {
     builder.build().unwrap_or_else(|error| panic!("{}: {error}", case.name))
 }
 
-/// The worst |C| over its scale, and the most that is missing in the energy, over a second.
+/// The largest |C| over its scale, and the largest error in the energy, over a second.
 fn run(case: &Case, integrator: Integrator, h: f64) -> (f64, f64) {
     let (system, state) = moving(case);
     let settings = Settings { integrator, h, tolerance: 1e-10, ..Settings::default() };
@@ -49,7 +49,7 @@ fn run(case: &Case, integrator: Integrator, h: f64) -> (f64, f64) {
 #[test]
 fn long_every_kind_is_held_and_its_energy_accounted_for() {
     for case in CASES.iter().filter(|case| case.moves) {
-        // What projections leave, and ten times that.
+        // Ten times the residual of the projections.
         let held = |integrator: Integrator, worst: f64| {
             assert!(worst < 1e-9, "{} under {integrator:?}: off by {worst:e}", case.name);
         };
@@ -61,8 +61,8 @@ fn long_every_kind_is_held_and_its_energy_accounted_for() {
             let ((worst, coarse), (_, fine)) = (run(case, integrator, 0.004), run(case, integrator, 0.002));
             held(integrator, worst);
             println!("{} {integrator:?} {worst:e} {coarse:e} {fine:e}", case.name);
-            // Rattle makes substeps by its tolerance; bdf2 takes h as it is, of second order: a quarter of it at half
-            // the step.
+            // Rattle chooses substeps by its tolerance. bdf2 steps by h and is of second order: half the step gives a
+            // quarter of the error.
             let second_order = fine < 1e-3 && fine < 0.35 * coarse;
             assert!(fine < 1e-6 || second_order, "{} under {integrator:?}: {coarse:e}, {fine:e}", case.name);
         }
@@ -84,7 +84,7 @@ pub(crate) fn curve(components: &[&str], from: f64, to: f64) -> Curve {
     Curve::parametric(components, from, to).unwrap()
 }
 
-/// Particles of 1 kg and 2 kg by turns under gravity along −y, and what holds them.
+/// Particles of 1 kg and 2 kg in turn under gravity along −y, and their constraints.
 pub(crate) fn system(places: &[&[f64]], constraints: impl FnOnce(&[ParticleId]) -> Vec<Constraint>) -> (System, State) {
     let dimension = if places[0].len() == 2 { Dimension::Two } else { Dimension::Three };
     let mut builder = System::builder(dimension);
@@ -97,7 +97,7 @@ pub(crate) fn system(places: &[&[f64]], constraints: impl FnOnce(&[ParticleId]) 
     builder.build().unwrap()
 }
 
-/// Mechanisms of one or several kinds, in the plane and in space, driven where they can be.
+/// Mechanisms of one or several kinds, in the plane and in space, driven if their kinds can be driven.
 fn mechanisms() -> Vec<(&'static str, (System, State))> {
     let point = || driven("0.1*sin(3*t)", "0.2*cos(2*t)");
     vec![
@@ -206,8 +206,8 @@ fn mechanisms() -> Vec<(&'static str, (System, State))> {
     ]
 }
 
-/// C within the tolerance asked for, relative to its scale, and the balance of energy to what the order leaves, over a
-/// second.
+/// Over a second, C stays within the tolerance relative to its scale, and the balance of energy within the error of the
+/// order.
 #[test]
 fn long_mechanisms_hold_and_account_for_their_energy() {
     // Of the largest kinetic energy: dop853 keeps 1e-9 a substep, and the spline, whose third derivative jumps, a

@@ -1,4 +1,4 @@
-//! What each kind refuses before anything moves, in words that say what to do.
+//! Input that each kind refuses before the run, with messages that say what to do.
 
 use super::case::{P, parse};
 use super::motion::curve;

@@ -1,4 +1,4 @@
-//! Rows of several constraints together, the state vector they are rows of, and their two formulations.
+//! Rows of several constraints together, the state vector that they act on, and their two formulations.
 
 use crate::systems;
 use crate::systems::dense::{assert_all_close, assert_close};
@@ -63,7 +63,7 @@ fn rod(random: &mut Random) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// Going to the classic forms and back changes the rows, not what they hold.
+/// The change to the classic forms and back changes the rows and not the positions that they allow.
 #[test]
 fn formulations_hold_the_same_places() {
     let mut random = Random::new(3);
@@ -75,7 +75,7 @@ fn formulations_hold_the_same_places() {
     assert_close("squared C", squared.residual[0], length.residual[0] * (distance + R), 1e-13);
     let back = evaluate(&classic.with_formulation(Formulation::Modern), &state);
     assert_eq!(back, length);
-    // The same motion: q̈ is that of the length form plus the form's own drift, which is zero on C = 0, Ċ = 0.
+    // The same motion: q̈ equals q̈ of the length form plus a drift of the squared form that is zero on C = 0, Ċ = 0.
     let (system, state) = systems::double_pendulum();
     let classic = system.with_formulation(Formulation::Classic);
     let (a, b) = (evaluate(&system, &state), evaluate(&classic, &state));

@@ -1,10 +1,10 @@
-//! Every kind where it has no gradient.
+//! Every kind at positions where it has no gradient.
 
 use super::case::P;
 use crate::systems::random::dimension;
 use qhat::{Angle, Area, Constraint, Distance, Gears, Lengths, Particle, Settings, Simulation, System, Volume};
 
-/// Where there is no gradient a step says so, or carries on: no panic, and no number that is not one.
+/// A step from a position without a gradient ends in an error or succeeds: no panic, and no NaN in the state.
 #[test]
 fn singular_places_end_in_an_error_or_in_numbers() {
     let start = |d: usize, constraint: Constraint| {

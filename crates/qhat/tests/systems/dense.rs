@@ -10,14 +10,14 @@ pub fn multiply_transposed(a: &[f64], columns: usize, x: &[f64]) -> Vec<f64> {
     (0..columns).map(|j| x.iter().enumerate().map(|(i, x)| a[i * columns + j] * x).sum()).collect()
 }
 
-/// J W Jᵀ for W given as one number a coordinate.
+/// J W Jᵀ for W given as one number for each coordinate.
 pub fn sandwich(j: &[f64], w: &[f64]) -> Vec<f64> {
     let rows: Vec<&[f64]> = j.chunks_exact(w.len()).collect();
     let entry = |a: &[f64], b: &[f64]| (0..w.len()).map(|k| a[k] * w[k] * b[k]).sum();
     rows.iter().flat_map(|a| rows.iter().map(move |b| entry(a, b))).collect()
 }
 
-/// Gaussian elimination with partial pivoting; `None` where a pivot is zero.
+/// Gaussian elimination with partial pivoting; `None` if a pivot is zero.
 pub fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
     for k in 0..n {
@@ -45,8 +45,8 @@ pub fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
 }
 
 /// Eigenvalues of a symmetric matrix of n rows and, in the same order, its eigenvectors of length 1, by Jacobi's
-/// method: rotations in the plane of two coordinates, each of which takes one entry off the diagonal, until none is
-/// left. Slow, and accurate to some ε of the largest entry in every eigenvalue.
+/// method: rotations in the plane of two coordinates, each of which makes one entry beside the diagonal zero, until all
+/// are zero. Slow; the error of every eigenvalue is some ε of the largest entry.
 pub fn eigen(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
     assert_eq!(a.len(), n * n);
     let rotated = |x: f64, y: f64, (cosine, sine): (f64, f64)| (cosine * x - sine * y, sine * x + cosine * y);

@@ -1,4 +1,4 @@
-//! Systems that several tests share, built through the public door.
+//! Systems that several tests share, built through the public interface.
 #![allow(unreachable_pub, reason = "a module of a test crate, which is its whole world")]
 
 pub mod dense;
@@ -27,7 +27,7 @@ pub fn id(place: usize) -> ParticleId {
 /// A frame of a page [s].
 pub const FRAME: f64 = 1.0 / 60.0;
 
-/// How many times as many random cases `make fuzz` asks for, in QHAT_FUZZ; 1 without it.
+/// The factor by which `make fuzz` increases the number of random cases, from QHAT_FUZZ; 1 without it.
 pub fn fuzz() -> u64 {
     std::env::var("QHAT_FUZZ").map_or(1, |times| times.parse().expect("QHAT_FUZZ is a whole number"))
 }
@@ -76,7 +76,7 @@ pub fn chain(links: usize, heavy: f64) -> (System, State) {
     builder.build().unwrap()
 }
 
-/// So many chains of `links` links of 0.01 m and 0.01 kg, each hung from its own point, at all angles.
+/// The given number of chains of `links` links of 0.01 m and 0.01 kg, each hung from its own point, at all angles.
 pub fn chains(count: usize, links: usize) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     for k in 0..count {

@@ -34,7 +34,7 @@ pub fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
             if i < links {
                 let rod = Distance::new(id, super::id(id.index() + 1), length);
                 let is_soft = random.below(12) == 0;
-                // Both ends held, by one rod: not for lanes.
+                // A single rod between two held ends cannot go into lanes.
                 let rod = if is_soft || links == 1 { rod.with_compliance(1e-2, 0.1) } else { rod };
                 builder.constraint(format!("rod {chain}-{i}"), rod);
             }

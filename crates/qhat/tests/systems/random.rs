@@ -78,7 +78,7 @@ pub fn web(random: &mut Random, d: usize, particles: usize) -> (System, State) {
         builder.particle(if i == 0 { particle.fixed() } else { particle.with_velocity(v) });
     }
     for i in 1..particles {
-        // The last one is nailed: hung from the fixed root itself, it would be held twice.
+        // The last particle is nailed; on a rod from the fixed root it would be held twice.
         let j = if i + 1 == particles { 1 + random.below(i - 1) } else { random.below(i) };
         let length = random.within(0.5, 2.0);
         let form = if random.below(2) == 0 { DistanceForm::Length } else { DistanceForm::Squared };

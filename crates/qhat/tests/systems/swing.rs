@@ -3,8 +3,8 @@
 use super::G;
 use qhat::Simulation;
 
-/// T = 4 √(L/g) K(sin(θ₀/2)) = 2π √(L/g) / agm(1, cos(θ₀/2)) [s]; L [m] is I/(m c) for a body that hangs c off its
-/// centre.
+/// T = 4 √(L/g) K(sin(θ₀/2)) = 2π √(L/g) / agm(1, cos(θ₀/2)) [s]; L [m] is I/(m c) for a body that hangs at the
+/// distance c from its centre.
 pub fn period(length: f64, amplitude: f64) -> f64 {
     let (mut a, mut b) = (1.0, libm::cos(0.5 * amplitude));
     for _ in 0..10 {
@@ -31,7 +31,7 @@ pub fn measured(mut simulation: Simulation, coordinate: usize, count: usize) -> 
     (passages[count] - passages[0]) / count as f64
 }
 
-/// Where the cubic Hermite polynomial between two moments (t, x, ẋ) passes zero, by bisection.
+/// The zero of the cubic Hermite polynomial between two moments (t, x, ẋ), by bisection.
 fn zero((t0, x0, v0): (f64, f64, f64), (t1, x1, v1): (f64, f64, f64)) -> f64 {
     let h = t1 - t0;
     let x = |s: f64| {

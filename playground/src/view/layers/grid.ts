@@ -3,7 +3,7 @@
 import { niceCeiling } from '../../session/numbers';
 import type { Brush } from '../brush';
 
-/** Grid lines come about this far apart, px. */
+/** Approximate distance of grid lines, px. */
 export const SPACING = 90;
 
 export function drawGrid({ context, camera, palette }: Brush): void {

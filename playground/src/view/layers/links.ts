@@ -14,7 +14,7 @@ export function drawLinks(brush: Brush, picture: Picture): void {
   highlight(brush, picture, picture.selection, 0.55);
 }
 
-/** One path a colour: a thousand links cost at most as many strokes as there are colours. */
+/** One path for each colour: a thousand links need at most as many strokes as there are colours. */
 function drawByColour({ context, palette, screen, sizes }: Brush, picture: Picture): void {
   const byStep: LinkShape[][] = Array.from({ length: TENSION_STEPS }, () => []);
   for (const shape of straight(picture)) byStep[stepOf(shape, picture)].push(shape);

@@ -4,7 +4,7 @@ import { type Brush, project } from '../brush';
 import { traceNail } from '../glyphs';
 import type { Picture } from '../picture';
 
-/** The ring of a nail is so much wider than its particle, px. */
+/** Width by which the ring of a nail extends beyond its particle, px. */
 const GAP = 4;
 
 export function drawNails({ context, camera, palette, sizes }: Brush, { shapes }: Picture): void {

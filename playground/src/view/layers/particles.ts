@@ -5,7 +5,7 @@ import { traceCircle, traceFixed } from '../glyphs';
 import type { Picture } from '../picture';
 import { LEAST_RADIUS } from '../sizes';
 
-/** In the plane more particles than this are drawn as one path without rims. */
+/** Number of particles in the plane above which they are drawn as one path without rims. */
 const MOST_WITH_RIMS = 60;
 
 export function drawParticles(brush: Brush, picture: Picture): void {

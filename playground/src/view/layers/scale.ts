@@ -1,4 +1,4 @@
-// The scale bar at the lower left, which says how long a metre is, and in 3D the three axes above it.
+// The scale bar at the lower left, which shows the length of a metre, and in 3D the three axes above it.
 
 import { format, niceCeiling } from '../../session/numbers';
 import type { Brush } from '../brush';

@@ -1,4 +1,4 @@
-// The engine's shapes behind links and particles. One path a style keeps scenes with many shapes fast.
+// The engine's shapes behind links and particles. One path for each style keeps scenes with many shapes fast.
 
 import type { Shape, ShapeKind } from '../../engine';
 import type { Brush } from '../brush';

@@ -9,7 +9,7 @@ import type { Picture } from '../picture';
 /** Turns of a spring's zig-zag. */
 const COIL_TURNS = 6;
 
-/** Within this part of its length a rope counts as taut: half a pixel of a rope across the screen. */
+/** Slack, relative to the length, below which a rope counts as taut: half a pixel for a rope across the screen. */
 const TAUT = 5e-4;
 
 export function traceBetween(brush: Brush, shape: Shape): void {
@@ -18,7 +18,7 @@ export function traceBetween(brush: Brush, shape: Shape): void {
   brush.context.lineTo(bx, by);
 }
 
-/** How far apart the two particles of a shape are, m. */
+/** The distance of the two particles of a shape, m. */
 function distance(picture: Picture, { particles: [a, b] }: Shape): number {
   const { dimension } = picture.structure;
   let square = 0;
@@ -31,7 +31,7 @@ function isSlack(picture: Picture, shape: Shape): boolean {
   return shape.kind === 'rope' && distance(picture, shape) < shape.size * (1 - TAUT);
 }
 
-/** Longer than its size: a strut beyond its shortest length lets its ends go. */
+/** Whether the ends are farther apart than the size: a strut beyond its shortest length carries no force. */
 export function isBeyond(picture: Picture, shape: Shape): boolean {
   return distance(picture, shape) > shape.size * (1 + TAUT);
 }
@@ -52,7 +52,7 @@ export function traceSlack(brush: Brush, shape: Shape, picture: Picture): void {
   const sag = (Math.sqrt(3 * (shape.size ** 2 - d ** 2)) / 4) * camera.scale;
   const along = (axis: Vec3) => picture.down.reduce((sum, x, k) => sum + x * axis[k], 0);
   context.moveTo(ax, ay);
-  // the middle of a quadratic curve is halfway to its control point
+  // the middle of a quadratic curve lies halfway between the chord and the control point
   const [cx, cy] = [
     (ax + bx) / 2 + 2 * sag * along(camera.right),
     (ay + by) / 2 - 2 * sag * along(camera.up),

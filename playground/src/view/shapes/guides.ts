@@ -6,7 +6,7 @@ import type { Vec3 } from '../camera';
 import { traceRing } from './solids';
 
 const ANGLE_RADIUS = 24;
-/** An angle may count from a direction: its line ends so far beyond the arc, px. */
+/** Length by which the line for the direction of an angle extends beyond the arc, px. */
 const REFERENCE = 10;
 
 /** A guide of a bead: a wire, an endless line or a ring. */
@@ -23,7 +23,7 @@ export function traceGuide(brush: Brush, shape: Shape): void {
   }
 }
 
-/** Across the whole canvas, wherever the view is. */
+/** A line across the whole canvas in every view. */
 function traceLine(brush: Brush, shape: Shape): void {
   const { context, camera } = brush;
   let [ax, ay, bx, by] = ends(brush, shape);
@@ -42,7 +42,7 @@ function traceLine(brush: Brush, shape: Shape): void {
   context.lineTo(ax + (nearest + reach) * ux, ay + (nearest + reach) * uy);
 }
 
-/** An arc at the corner from the first arm, or the direction, to the second, the shorter way. */
+/** An arc at the corner from the first arm, or from the direction, to the second arm, over at most half a turn. */
 export function traceAngle({ context, camera, screen }: Brush, { particles, points }: Shape): void {
   const arm = (a: number, b: number) =>
     Math.atan2(screen[3 * b + 1] - screen[3 * a + 1], screen[3 * b] - screen[3 * a]);

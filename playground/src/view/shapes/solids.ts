@@ -6,15 +6,15 @@ import { type Brush, ends, project } from '../brush';
 import type { Vec3 } from '../camera';
 import { traceCircle } from '../glyphs';
 
-/** Strokes of a hatch are this far apart and go this deep, px. */
+/** Distance and depth of the strokes of a hatch, px. */
 const HATCH = 12;
-/** The lines of a plane are about this far apart, px, and so many each way. */
+/** Approximate distance of the lines in a plane, px, and their number to each side. */
 const PLANE_CELL = 60;
 const PLANE_CELLS = 8;
-/** A ring on a screen of a thousand pixels is within a pixel of this many straight pieces. */
+/** Number of straight pieces of a ring: on a screen of a thousand pixels they are within a pixel of the ring. */
 const RING_PIECES = 96;
 
-/** In the plane a line across the canvas, hatched below; in space ground is a plane. */
+/** In the plane, ground is a line across the canvas with a hatch below; in space it is a plane. */
 export function traceGround(brush: Brush, shape: Shape): void {
   const { context, camera } = brush;
   if (camera.dimension === 3) return;
@@ -44,7 +44,7 @@ export function tracePlane({ context, camera }: Brush, { points }: Shape): void 
   const [n, u, v] = frame([points[3], points[4], points[5]]);
   const cell = niceCeiling(PLANE_CELL / camera.scale);
   const away = camera.centre.map((x, k) => x - point[k]);
-  // whole cells from the plane's own point, so that the lines stay in the scene
+  // a whole number of cells from the plane's own point, so that the lines are fixed in the scene
   const [i, j] = [u, v].map((axis) => Math.round(dot(away, axis) / cell));
   const at = (a: number, b: number) =>
     project(
@@ -78,7 +78,7 @@ export function traceGreatCircles(brush: Brush, shape: Shape): void {
   }
 }
 
-/** A circle about the first end of a shape, across an axis. */
+/** A circle about the first end of a shape, at right angles to an axis. */
 function traceAround(brush: Brush, shape: Shape, axis: number[]): void {
   const { context, camera } = brush;
   const [x, y] = ends(brush, shape);
@@ -122,7 +122,7 @@ export function traceBox({ context, camera }: Brush, { points }: Shape): void {
     const side = Math.sign(camera.towards[axis]);
     if (side === 0) continue;
     const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    // every face has the same sense on the screen: faces of two boxes add up and do not cancel
+    // every face goes the same way round on the screen, so that overlapping faces of two boxes do not cancel
     for (const [n, [a, b]] of [
       [-1, -1],
       [side, -side],
@@ -150,7 +150,7 @@ export function traceWheel(brush: Brush, shape: Shape): void {
   brush.context.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
 }
 
-/** The unit vector of a direction and two across it. */
+/** The unit vector of a direction, and two unit vectors at right angles to it and to each other. */
 function frame(direction: number[]): [Vec3, Vec3, Vec3] {
   const n = unit(direction);
   const least = [0, 1, 2].reduce((best, k) => (Math.abs(n[k]) < Math.abs(n[best]) ? k : best), 0);

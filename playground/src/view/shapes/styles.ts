@@ -20,17 +20,17 @@ export interface Style {
   kinds: readonly ShapeKind[];
   /** its name in the palette */
   colour: 'ink' | 'muted' | 'guide' | 'background' | 'accent' | 'spring';
-  /** of the outline, px; 0 for none */
+  /** width of the outline, px; 0 for no outline */
   width: number;
   /** lengths of dashes and gaps, px */
   dash?: readonly number[];
-  /** opacity of the inside; without, only the outline is drawn */
+  /** opacity of the inside; without it only the outline is drawn */
   fill?: number;
   /** Adds a shape to the path. */
   trace(brush: Brush, shape: Shape, picture: Picture): void;
 }
 
-/** Back to front. */
+/** The styles, from back to front. */
 export const STYLES: readonly Style[] = [
   { kinds: ['area'], colour: 'accent', width: 0, fill: 0.14, trace: traceArea },
   { kinds: ['ground'], colour: 'muted', width: 1.25, trace: traceGround },
