@@ -72,8 +72,8 @@ impl Gears {
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
-    /// A pinion and a rack. The pinion is an arm from its centre to one of its points, has the given radius \[m\], and is
-    /// to the left of the direction of the rack, which may have any length. `rack` is a point of the rack.
+    /// A pinion and a rack. The pinion is an arm from its centre to one of its points, has the given radius \[m\], and
+    /// is to the left of the direction of the rack, which may have any length. `rack` is a point of the rack.
     pub fn rack(
         pinion: [ParticleId; 2],
         rack: ParticleId,

@@ -6,9 +6,9 @@
 //! C_1 = |d| − r,   J = nᵀ,    C_t = −n·ṗ − ṙ           (on_sphere.rs)
 //! ```
 //!
-//! Two rows \[m\], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards \[N\].
-//! Three dimensions only; in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
-//! where both gradients have the same direction.
+//! Two rows \[m\], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards
+//! \[N\]. Three dimensions only; in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the
+//! axis, where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
 use super::error::ConstraintError;

@@ -1,5 +1,5 @@
-//! OnEllipse: a particle on an ellipse about a point p(t) or another particle, with half axes a(t) along u and b(t) across
-//! it. In the plane.
+//! OnEllipse: a particle on an ellipse about a point p(t) or another particle, with half axes a(t) along u and b(t)
+//! across it. In the plane.
 //!
 //! ```text
 //! d = x − p or x − x_p,   û = u/|u|,   û⊥ = û turned by a quarter turn to the left
@@ -8,8 +8,9 @@
 //! C_t = −g·ṗ − c/ρ (e_1² ȧ/a + e_2² ḃ/b) + ċ (ρ − 1),   ċ = (ȧ b + a ḃ)/(2 c)
 //! ```
 //!
-//! λ |g| is the force of the ellipse on the particle [N], outwards where λ > 0; |g| = 1 on a circle. Fails in the centre,
-//! where ρ has no gradient: the first axis is taken for it, so that a projection can still pull the particle out.
+//! λ |g| is the force of the ellipse on the particle [N], outwards where λ > 0; |g| = 1 on a circle. Fails in the
+//! centre, where ρ has no gradient: the first axis is taken for it, so that a projection can still pull the particle
+//! out.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
 use super::error::ConstraintError;

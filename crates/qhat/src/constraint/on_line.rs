@@ -7,8 +7,8 @@
 //! C_t = ∂C/∂d · u̇ − ∂C/∂w · ṗ
 //! ```
 //!
-//! λ is the force of the line on the particle \[N\]. The line has no ends: it extends beyond a and b. Fails where a and b
-//! meet, because they do not define a line there; C is then NaN.
+//! λ is the force of the line on the particle \[N\]. The line has no ends: it extends beyond a and b. Fails where a and
+//! b meet, because they do not define a line there; C is then NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::error::ConstraintError;

@@ -6,8 +6,9 @@
 //! J = nᵀ on the particle, −nᵀ on the other particle,   C_t = −n·ṗ − ṙ
 //! ```
 //!
-//! λ is the force of the sphere on the particle \[N\], outwards; the tension of a driven rod is −λ. Distance is the same
-//! constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large systems.
+//! λ is the force of the sphere on the particle \[N\], outwards; the tension of a driven rod is −λ. Distance is the
+//! same constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large
+//! systems.
 //!
 //! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
 

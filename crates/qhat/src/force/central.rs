@@ -22,7 +22,8 @@ pub struct CentralForce {
 }
 
 impl CentralForce {
-    /// Gravity of a particle of the given mass \[kg\] towards a point \[m\]; μ = G M in m³/s², the softening length in m.
+    /// Gravity of a particle of the given mass \[kg\] towards a point \[m\]; μ = G M in m³/s², the softening length in
+    /// m.
     pub fn gravity(particle: ParticleId, mass: f64, center: [f64; 3], mu: f64, softening: f64) -> Self {
         CentralForce { particle, center, strength: -mu * mass, softening }
     }

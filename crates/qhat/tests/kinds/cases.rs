@@ -8,8 +8,8 @@ use qhat::{
     Purpose, Relation, Surface, Volume, rigid_rods,
 };
 
-/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test fails
-/// where a kind is missing: name a new kind here, then add its cases.
+/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test
+/// fails where a kind is missing: name a new kind here, then add its cases.
 macro_rules! kinds {
     ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
         /// Name, dimensions, and whether it is an equality.
@@ -30,7 +30,7 @@ macro_rules! kinds {
             assert_eq!(kind(&nail), nail.kind());
             let listed = |name: &&str| KINDS.iter().any(|(listed, ..)| listed == name);
             let missing: Vec<_> = Constraint::KINDS.iter().filter(|name| !listed(name)).collect();
-            assert!(missing.is_empty(), "{missing:?} are kinds of the engine: name them in `kinds!`, then add their cases");
+            assert!(missing.is_empty(), "the engine has {missing:?}: name them in `kinds!`, then add their cases");
         }
     };
 }
