@@ -29,7 +29,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
         }
         // A residual of a user has no shape.
         Constraint::ExpressionConstraint(_) | Constraint::Custom(_) => (),
-        Constraint::Obstacle(barrier) => add_obstacle(barrier, shapes),
+        Constraint::Obstacle(obstacle) => add_obstacle(obstacle, shapes),
         Constraint::Relation(relation) => add_relation(relation, shapes),
         Constraint::Lengths(lengths) => add_lengths(lengths, shapes),
         Constraint::Angle(angle) => {

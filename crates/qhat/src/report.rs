@@ -235,29 +235,30 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::Singular => f.write_str(
-                "A = J W Jᵀ is singular: some constraints repeat what others say; the multipliers shown are the \
-                 smallest that do it",
+                "some constraints repeat what others say, so A = J W Jᵀ is singular: the motion and the total force are \
+                 unique, the single multipliers are not, and the smallest that do it are shown. `qhat check` counts the \
+                 redundant rows",
             ),
             Warning::NoGradient { rows } => write!(
                 f,
-                "A = J W Jᵀ is singular: the gradient of {} is zero here, so nothing can hold it \
-                 (diagonal drag hides this)",
+                "the gradient of {} is zero here, so no force can hold it, and A = J W Jᵀ is singular: use the modern \
+                 form of the constraint, or start elsewhere (diagonal drag hides this)",
                 rows.join(", ")
             ),
             Warning::TooStiff { substeps } => write!(
                 f,
-                "the motion is too stiff to be followed accurately in the {substeps} substeps that frame_work and \
-                 max_substeps allow a frame, so bdf2 carries it: rods hold, fast oscillations are damped"
+                "the motion is too stiff for the {substeps} substeps that frame_work and max_substeps allow a frame, so \
+                 bdf2 carries it: rods hold, fast oscillations are damped. Raise frame_work to follow them"
             ),
             Warning::HandedOver { time } => write!(
                 f,
-                "rattle could not meet the constraints at t = {time:.4} s with any substep, so dopri5 carried the \
-                 frame on"
+                "rattle could not meet the constraints at t = {time:.4} s with a substep of any length, so dopri5 \
+                 finished the frame. If this comes back, use dop853"
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,
-                "the frame budget ran out at t = {time:.4} s after {iterations} Newton iterations: \
-                 `{row}` is off by {relative:.1e} of its size"
+                "the frame budget was spent at t = {time:.4} s after {iterations} Newton iterations, and `{row}` is off \
+                 by {relative:.1e} of its size: raise frame_budget, or shorten h"
             ),
         }
     }

@@ -229,8 +229,8 @@ fn bridge() -> (SystemBuilder, usize) {
     }
     let count = deck.len() + 4;
     for i in 0..count {
-        let barrier = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(crate::systems::id(i), ground()) };
-        builder.constraint(format!("ground{i}"), barrier);
+        let obstacle = Obstacle { friction: 0.5, restitution: 0.3, ..Obstacle::new(crate::systems::id(i), ground()) };
+        builder.constraint(format!("ground{i}"), obstacle);
     }
     builder.force(gravity());
     (builder, count)

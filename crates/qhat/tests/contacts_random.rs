@@ -54,8 +54,8 @@ fn heap(random: &mut Random) -> SystemBuilder {
     }
     for (i, &id) in ids.iter().enumerate() {
         for (k, surface) in surfaces().into_iter().enumerate() {
-            let barrier = Obstacle { restitution, friction, ..Obstacle::new(id, surface) };
-            builder.constraint(format!("surface{k}({i})"), barrier);
+            let obstacle = Obstacle { restitution, friction, ..Obstacle::new(id, surface) };
+            builder.constraint(format!("surface{k}({i})"), obstacle);
         }
     }
     builder.force(gravity());

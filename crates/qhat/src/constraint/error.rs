@@ -135,7 +135,7 @@ pub enum ConstraintError {
         most: u32,
     },
     /// A wheel has no teeth.
-    #[error("a wheel without teeth takes no part; leave it out")]
+    #[error("a wheel without teeth does not mesh; leave it out")]
     GearWithoutTeeth {
         /// The place of its arm.
         arm: usize,

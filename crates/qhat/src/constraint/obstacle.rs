@@ -231,7 +231,7 @@ impl Holds for Obstacle {
 
     fn check(&self) -> Result<(), ConstraintError> {
         check_restitution(self.restitution)?;
-        not_negative("the friction of a barrier", self.friction)?;
+        not_negative("the friction of an obstacle", self.friction)?;
         match &self.surface {
             Surface::HalfSpace { normal, offset } => {
                 finite("the offset of a half-space", *offset)?;
