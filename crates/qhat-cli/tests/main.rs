@@ -7,5 +7,6 @@ mod common;
 mod events;
 mod play;
 mod refuse;
+mod render;
 mod run;
 mod words;

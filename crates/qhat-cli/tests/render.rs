@@ -1,8 +1,6 @@
 //! `qhat render`: pictures, read back by a parser of XML and a decoder of PNG, and input that is refused.
 
-mod common;
-
-use common::{Folder, INFEASIBLE, PENDULUM};
+use crate::common::{Folder, INFEASIBLE, PENDULUM};
 use roxmltree::Document;
 use std::path::Path;
 

@@ -237,3 +237,17 @@ fn every_shipped_scene_runs() {
         assert!(ran.json().is_object(), "{name}");
     }
 }
+
+/// A bob of m kg that hangs at rest pulls with m g, and a bob above its hook pushes with it.
+#[test]
+fn the_largest_tension_has_four_digits() {
+    for (mass, y, tension) in
+        [(206.26, -1.0, "2023"), (2.0, -1.0, "19.62"), (0.012_586, -1.0, "0.1235"), (2.0, 1.0, "-19.62")]
+    {
+        let scene = PENDULUM.replace("at = [1.0, 0.0], mass = 2.0", &format!("at = [0.0, {y:?}], mass = {mass:?}"));
+        let folder = Folder::with(&[("bob.toml", &scene)]);
+        let summary = folder.qhat(&["run", "bob.toml"]).well().stdout;
+        let expected = format!("at most {tension} N in ");
+        assert!(summary.contains(&expected), "{mass} kg at {y} m: no `{expected}` in\n{summary}");
+    }
+}

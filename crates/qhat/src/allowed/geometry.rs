@@ -14,7 +14,7 @@ pub enum GeometryError {
         count: usize,
     },
     /// A component of a parametric curve depends on particles.
-    #[error("a curve may depend on nothing but s")]
+    #[error("a curve may depend on s only")]
     CurveNamesParticles {
         /// The place of the component.
         component: usize,

@@ -25,10 +25,10 @@ pub enum ConstraintError {
         dimension: usize,
     },
     /// A circle with an axis is in the plane.
-    #[error("a circle with an axis needs three dimensions; in two, a sphere is the circle")]
+    #[error("a circle with an axis needs three dimensions; in two dimensions, use a sphere")]
     CircleInPlane,
     /// A plane that holds a particle is in the plane.
-    #[error("a plane needs three dimensions; in two, hold the particle on a line")]
+    #[error("a plane needs three dimensions; in two dimensions, hold the particle on a line")]
     PlaneInPlane,
     /// A number is out of range.
     #[error(transparent)]
@@ -129,7 +129,7 @@ pub enum ConstraintError {
         arm: usize,
     },
     /// A wheel has too many teeth.
-    #[error("less their common factor, the numbers of teeth may be {most} at most")]
+    #[error("divided by their common factor, the numbers of teeth may be at most {most}")]
     GearTeeth {
         /// The largest number of teeth.
         most: u32,

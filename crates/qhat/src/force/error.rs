@@ -67,7 +67,7 @@ pub enum ForceError {
         content: f64,
     },
     /// Too many particles hold a gas.
-    #[error("a gas is held by at most {most} particles, not {count}")]
+    #[error("a gas may have at most {most} particles, but has {count}")]
     GasParticles {
         /// The largest number of particles.
         most: usize,
