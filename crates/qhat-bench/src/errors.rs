@@ -1,4 +1,5 @@
-//! What a motion got wrong, whoever computed it: from positions and velocities at the end of each frame.
+//! The errors of a motion, from the positions and velocities at the end of each frame. The motion may come from any
+//! engine.
 //!
 //! ```text
 //! length error of a rod   | |x_a − x_b| − r | / r
@@ -21,19 +22,19 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of a motion that starts where the workload does, at rest.
+    /// The errors of a motion that starts at the positions of the workload, at rest.
     pub fn of(workload: &Workload) -> Self {
         let start = potential(workload, &workload.positions);
         Errors { start: Some(start), ..Errors::default() }
     }
 
-    /// Takes in one more frame: positions \[m\] and velocities \[m/s\], d·n numbers each.
+    /// Adds one frame: positions \[m\] and velocities \[m/s\], d·n numbers each.
     pub fn frame(&mut self, workload: &Workload, positions: &[f64], velocities: &[f64]) {
         let d = workload.dimension;
         for (a, b, length) in workload.rods() {
             let square = |k: usize| (positions[a * d + k] - positions[b * d + k]).powi(2);
             let error = ((0..d).map(square).sum::<f64>().sqrt() - length).abs() / length;
-            // `max` would pass over a NaN.
+            // `f64::max` would ignore a NaN.
             if error > self.worst_length || error.is_nan() {
                 self.worst_length = error;
             }
@@ -51,12 +52,12 @@ impl Errors {
         (self.sum_of_squares / self.lengths.max(1) as f64).sqrt()
     }
 
-    /// What the last frame has too much of energy, over the largest kinetic energy; negative where some was lost.
+    /// The energy error of the last frame, relative to the largest kinetic energy; negative if energy was lost.
     pub fn energy(&self) -> f64 {
         self.missing / self.largest_kinetic
     }
 
-    /// The largest amount that any frame had too much or too little, over the same.
+    /// The largest energy error of any frame in size, relative to the largest kinetic energy.
     pub fn energy_max(&self) -> f64 {
         self.largest_missing / self.largest_kinetic
     }

@@ -1,5 +1,5 @@
-//! Six small pieces of work whose instructions callgrind counts: the count hardly moves with what else the machine
-//! does, so a change of a few in a hundred shows, where a time would not.
+//! Six kernels, small pieces of work whose instructions callgrind counts. Other programs on the machine hardly change
+//! the count, so it shows a change of a few percent. A measured time does not.
 
 use crate::setting::Setting;
 use crate::workload::Workload;
@@ -15,7 +15,7 @@ use std::{env, fs, io};
 type Kernel = Box<dyn FnMut()>;
 type SetUp = fn() -> Kernel;
 
-/// Each kernel by its name, with what sets it up.
+/// Each kernel: its name and the function that sets it up.
 const KERNELS: [(&str, SetUp); 6] = [
     ("chain100-dop853-frame", || frame("chain100", Integrator::Dop853)),
     ("chain100-rattle-frame", || frame("chain100", Integrator::Rattle)),
@@ -29,7 +29,7 @@ fn workload(name: &str) -> Workload {
     name.parse().expect("kernels name workloads")
 }
 
-/// One frame of 1 ms, after 0.1 s of motion: at the start nothing moves and a step is cheaper than it will be.
+/// One frame of 1 ms, after 0.1 s of motion. At the start all particles are at rest, and a step is cheaper than later.
 fn frame(name: &str, integrator: Integrator) -> Kernel {
     let (system, state) = workload(name).system();
     let settings = Setting { integrator, tolerance: 1e-4 }.settings(1e-3);
@@ -40,7 +40,7 @@ fn frame(name: &str, integrator: Integrator) -> Kernel {
     })
 }
 
-/// Brings a net back whose particles were moved by up to a hundredth of a rod.
+/// The projection of a net whose particles were moved by up to a hundredth of a rod.
 fn projection() -> Kernel {
     let net = workload("net32");
     let (system, state) = net.system();
@@ -54,7 +54,7 @@ fn projection() -> Kernel {
     })
 }
 
-/// Every symbol of one evaluation.
+/// One evaluation of all symbols of the equation.
 fn terms() -> Kernel {
     let (system, state) = workload("chain100").system();
     Box::new(move || {
@@ -62,24 +62,24 @@ fn terms() -> Kernel {
     })
 }
 
-/// What callgrind counts: it is told to collect inside this function alone.
+/// The function whose instructions are counted: callgrind is told to collect inside it only.
 #[inline(never)]
 fn counted(kernel: &mut dyn FnMut()) {
     kernel();
 }
 
-/// Sets one kernel up and runs it once; this is what runs under callgrind. Tells whether there is one of this name.
+/// Sets one kernel up and runs it once, under callgrind. Returns false if no kernel has this name.
 pub fn run_one(name: &str) -> bool {
     let Some((_, set_up)) = KERNELS.iter().find(|(known, _)| *known == name) else { return false };
     counted(&mut *set_up());
     true
 }
 
-/// Counts the instructions of every kernel and prints them beside those kept in the file; `keep` writes the file anew.
-/// Where there is no valgrind that is said, and nothing is compared.
+/// Counts the instructions of every kernel and prints them beside the counts kept in the file; `keep` writes the file
+/// anew. Without valgrind it prints a note and compares nothing.
 ///
 /// # Errors
-/// A file that cannot be read or written, a count that callgrind does not give.
+/// A file that cannot be read or written, or output of callgrind without a count.
 pub fn compare(baseline: &Path, keep: bool) -> Result<(), Box<dyn Error>> {
     let kept = read(baseline)?;
     let mut csv = String::from("kernel,instructions\n");
@@ -111,7 +111,7 @@ fn read(baseline: &Path) -> Result<BTreeMap<String, u64>, Box<dyn Error>> {
     pairs.map(|(name, count)| Ok((name.to_owned(), count.parse()?))).collect()
 }
 
-/// Instructions of one kernel, by this very program under callgrind; none where there is no valgrind.
+/// The number of instructions of one kernel, from a run of this program under callgrind; `None` without valgrind.
 fn count(name: &str) -> Result<Option<u64>, Box<dyn Error>> {
     let valgrind = Command::new("valgrind")
         .args(["--tool=callgrind", "--toggle-collect=*kernels*counted*", "--callgrind-out-file=/dev/null"])

@@ -1,8 +1,8 @@
-//! What qhat costs beside what it gets wrong: speed without its error is no result.
+//! Benchmarks of qhat: the time of a simulation together with its errors, because a time alone says nothing.
 //!
-//! A [`Workload`] is particles and rods in neutral form, from which both qhat's `System` and the one file that every
-//! other engine reads are made. [`run()`] simulates one under a [`Setting`]; [`Errors`] measures a motion, whoever
-//! computed it.
+//! A [`Workload`] has particles and rods in a form that belongs to no engine. qhat's `System` is made from it, and so
+//! is the file that the other engines read. [`run()`] simulates a workload under a [`Setting`]. [`Errors`] measures the
+//! errors of a motion, computed by qhat or by another engine.
 
 pub mod kernels;
 pub mod scenes;

@@ -1,4 +1,4 @@
-//! The parts of `make bench` that are qhat's own; docs/benchmarks.md says what is measured and how to read it.
+//! The measurements of qhat itself in `make bench`; docs/benchmarks.md describes them and how to read them.
 
 use qhat_bench::trajectory::{Writer, measure};
 use qhat_bench::{Row, Series, Setting, Workload, kernels, quickest, run, scenes, settings};
@@ -11,15 +11,15 @@ use std::{env, fs};
 const USAGE: &str = "Usage:
   qhat-bench scenes [SCENE …]                     every shipped scene, into benches/results/scenes.csv
   qhat-bench workloads [WORKLOAD …]               every workload, into benches/results/workloads.csv
-  qhat-bench kernels [--keep]                     instructions beside those kept; --keep writes them anew
-  qhat-bench settings WORKLOAD                    the settings it is measured at, one a line
-  qhat-bench neutral WORKLOAD FILE                the file that every other engine reads
+  qhat-bench kernels [--keep]                     instructions beside the kept counts; --keep replaces these
+  qhat-bench settings WORKLOAD                    the settings of its measurements, one on each line
+  qhat-bench neutral WORKLOAD FILE                the file that the other engines read
   qhat-bench trajectory WORKLOAD SETTING SECONDS FILE
-                                                  a run of qhat as another engine would leave it; at most SECONDS of CPU
-  qhat-bench measure WORKLOAD FILE                the errors of a trajectory, whoever made it
-Named scenes or workloads are printed only.";
+                                                  the trajectory of a run of qhat, of at most SECONDS of CPU
+  qhat-bench measure WORKLOAD FILE                the errors of a trajectory of any engine
+With names of scenes or workloads, results are printed and no file is written.";
 
-/// What one run of `workloads` may cost; a setting that needs more is stopped, and its row says how far it got.
+/// Most CPU time of one run of `workloads`. A run that needs more is stopped, and its row has the time that it reached.
 const LIMIT: Duration = Duration::from_secs(10);
 
 fn main() -> ExitCode {
@@ -77,8 +77,8 @@ fn workloads(wanted: &[&str], file: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One run, told as every other engine tells it: the trajectory in a file, CPU seconds and why it ended early on a
-/// line.
+/// One run, with the same output as from the other engines: the trajectory in a file, and on one line the CPU seconds
+/// and the reason of an early end.
 fn trajectory(workload: &Workload, setting: &Setting, limit: Duration, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut written = Writer::create(file)?;
     let mut failed = Ok(());

@@ -5,7 +5,7 @@ use crate::workload::Workload;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The workloads that `qhat bench` runs when none is named, by family and growing size.
+/// The workloads that `qhat bench` runs when no name is given, by family and by growing size.
 pub const NAMES: [&str; 22] = [
     "chain10",
     "chain100",
@@ -31,7 +31,7 @@ pub const NAMES: [&str; 22] = [
     "many10000",
 ];
 
-/// A name that is no workload's.
+/// The error for a name that no workload has.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
     "there is no workload `{name}`; use chainN, heavyR, netN, clothN, trussK, trussKr, four-bar, starN or manyN, \
@@ -39,7 +39,7 @@ pub const NAMES: [&str; 22] = [
     NAMES.join(", ")
 )]
 pub struct UnknownWorkload {
-    /// What was asked for.
+    /// The name that was given.
     pub name: String,
 }
 
@@ -63,7 +63,7 @@ fn sized(family: &str, size: &str) -> Option<Workload> {
         Some(digits) if family == "truss" => (digits, true),
         _ => (size, false),
     };
-    // Sizes are counted, but 1e6 is easier to read than 1000000.
+    // Sizes are integers, read as f64 because 1e6 is easier to read than 1000000.
     let size = digits.parse().ok().filter(|&size: &f64| (1.0..=1e7).contains(&size) && size.fract() == 0.0)?;
     let count = size as usize;
     match family {

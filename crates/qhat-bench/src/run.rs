@@ -1,4 +1,4 @@
-//! One workload under one setting: the time of the stepping alone, and what came out.
+//! One run: a workload under one setting, with the time of the steps and the errors of the motion.
 
 use crate::errors::Errors;
 use crate::setting::Setting;
@@ -7,20 +7,20 @@ use cpu_time::ThreadTime;
 use qhat::{Simulation, StepError};
 use std::time::Duration;
 
-/// What a run cost and what it got wrong.
+/// The cost and the errors of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// CPU time of the stepping alone.
+    /// CPU time of the steps alone.
     pub cpu: Duration,
-    /// How far it got \[s\].
+    /// The simulated time that the run reached \[s\].
     pub simulated: f64,
     /// Substeps taken.
     pub substeps: usize,
     /// Factorizations of A.
     pub factorizations: usize,
-    /// Measured at the end of each frame.
+    /// The errors, measured at the end of each frame.
     pub errors: Errors,
-    /// Why it ended early, if it did.
+    /// The reason of an early end, if there was one.
     pub ended: Option<String>,
 }
 
@@ -31,12 +31,12 @@ impl Outcome {
     }
 }
 
-/// Simulates a workload until its end, or until a frame ends after `limit` of CPU time. `each` sees positions and
-/// velocities at the end of every frame; its time is not counted.
+/// Simulates a workload until its end, or until a frame ends after `limit` of CPU time. `each` is called with
+/// positions and velocities at the end of every frame; its time is not counted.
 ///
 /// # Errors
-/// Settings out of range, or a start that cannot be made consistent. A step that fails ends the run and is told in
-/// [`Outcome::ended`].
+/// Settings out of range, or a start that cannot be made consistent. A step that fails ends the run, and
+/// [`Outcome::ended`] has the error.
 pub fn run(
     workload: &Workload,
     setting: &Setting,
@@ -79,20 +79,20 @@ pub fn run(
     Ok(outcome)
 }
 
-/// The quickest of up to three runs.
+/// The fastest of up to three runs.
 ///
 /// # Errors
-/// As [`run`].
+/// The same errors as [`run`].
 pub fn best(workload: &Workload, setting: &Setting, limit: Duration) -> Result<Outcome, StepError> {
     let again = || run(workload, setting, limit, |_, _| ());
     quickest(again()?, again)
 }
 
-/// A run with the time of the quickest of up to three like it, as many as fit into a second: what else the machine does
-/// only ever adds time.
+/// The first run with the CPU time of the fastest of up to three equal runs, as many as fit into a second. The fastest
+/// counts, because other programs on the machine can only add time.
 ///
 /// # Errors
-/// As the runs.
+/// The errors of the runs.
 pub fn quickest(first: Outcome, again: impl Fn() -> Result<Outcome, StepError>) -> Result<Outcome, StepError> {
     const RUNS: usize = 3;
     let (mut best, mut spent) = (first.clone(), first.cpu);

@@ -1,4 +1,4 @@
-//! Every shipped scene as it is, three times.
+//! Every shipped scene with its own settings, three times.
 
 use cpu_time::ThreadTime;
 use qhat::StepError;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Simulated time of one case \[s\]: long enough for chains to whip, short enough to run all scenes in a minute.
 const SIMULATED: f64 = 2.0;
 
-/// Runs of a case; the fastest counts, because what else the machine does only ever adds time.
+/// Runs of a case. The fastest counts, because other programs on the machine can only add time.
 const RUNS: usize = 3;
 
 struct Outcome {
@@ -23,10 +23,10 @@ struct Outcome {
     energy_error_max: f64,
 }
 
-/// Runs the scenes of these names, or all; prints a table, and writes the file if all were run.
+/// Runs the scenes of these names, or all scenes without names. Prints a table, and writes the file if all were run.
 ///
 /// # Errors
-/// A scene that fails, a file that cannot be written.
+/// A scene that fails, or a file that cannot be written.
 pub fn scenes(wanted: &[String], results: &Path) -> Result<(), Box<dyn Error>> {
     let mut csv = String::from(
         "scene,integrator,rows,simulated_s,cpu_ms_per_simulated_s,us_per_substep,substeps,\
@@ -63,7 +63,7 @@ pub fn scenes(wanted: &[String], results: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One run of a scene; the time is that of the stepping alone.
+/// One run of a scene; only the time of the steps counts.
 fn run(scene: &Scene) -> Result<Outcome, StepError> {
     let mut simulation = scene.simulation()?;
     let frames = (SIMULATED / scene.settings.h).round() as usize;

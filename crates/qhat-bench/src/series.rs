@@ -1,4 +1,4 @@
-//! Several workloads one after the other, each at its settings.
+//! Several workloads one after the other, each under its settings.
 
 use crate::names::{NAMES, UnknownWorkload};
 use crate::run::best;
@@ -8,7 +8,7 @@ use crate::workload::Workload;
 use qhat::StepError;
 use std::time::Duration;
 
-/// Which workloads to measure, and how.
+/// The workloads to measure, with their settings and the limit of time.
 #[derive(Clone, Debug)]
 pub struct Series {
     names: Vec<String>,
@@ -17,11 +17,11 @@ pub struct Series {
 }
 
 impl Series {
-    /// The workloads of these names, or all where none is named, at one setting or at those that each is measured at. A
-    /// run is stopped after `limit` of CPU time.
+    /// The workloads of these names, or all workloads without names. They run under `setting`, or without it under all
+    /// settings of each workload ([`settings`]). A run is stopped after `limit` of CPU time.
     ///
     /// # Errors
-    /// A name that is no workload's: told before anything is run.
+    /// A name that no workload has. All names are checked before the first run.
     pub fn new(names: &[impl AsRef<str>], setting: Option<Setting>, limit: Duration) -> Result<Self, UnknownWorkload> {
         let mut names: Vec<String> = names.iter().map(|name| name.as_ref().to_owned()).collect();
         if names.is_empty() {
@@ -33,17 +33,17 @@ impl Series {
         Ok(Series { names, setting, limit })
     }
 
-    /// Measures one after the other, the quickest of up to three runs each; `each` sees every row as soon as it is
-    /// known.
+    /// Measures the workloads one after the other; the fastest of up to three runs counts. `each` is called with every
+    /// row as soon as it is known.
     ///
     /// # Errors
-    /// A run that cannot start, or what `each` ends with.
+    /// A run that cannot start, or an error of `each`.
     pub fn run<E: From<UnknownWorkload> + From<StepError>>(
         &self,
         mut each: impl FnMut(&Row) -> Result<(), E>,
     ) -> Result<(), E> {
         for name in &self.names {
-            // Made here, because all at once they would fill the memory.
+            // Each workload is made just before its run, because all of them together would fill the memory.
             let workload: Workload = name.parse()?;
             for setting in self.setting.map_or_else(|| settings(&workload), |setting| vec![setting]) {
                 each(&Row::new(&workload, setting, best(&workload, &setting, self.limit)?))?;

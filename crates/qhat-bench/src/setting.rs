@@ -1,4 +1,4 @@
-//! The settings that qhat is measured at: the one place to add an integrator or a tolerance.
+//! The settings under which qhat is measured. To measure another integrator or tolerance, add it here.
 
 use crate::workload::Workload;
 use qhat::{Integrator, Settings};
@@ -6,12 +6,12 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Integrators that hold C = 0, each with tolerances from loose to tight, its recommended one among them.
+/// Integrators that hold C = 0, each with tolerances from loose to tight. The recommended tolerance is among them.
 pub const SETTINGS: [(Integrator, &[f64]); 5] = [
     (Integrator::Rattle, &[1e-3, 1e-4, 1e-5]),
     (Integrator::Dopri5, &[1e-3, 1e-4, 1e-6]),
     (Integrator::Dop853, &[1e-3, 1e-4, 1e-6]),
-    // These know no tolerance; the frame is their step.
+    // These integrators ignore the tolerance; their step is the frame.
     (Integrator::Implicit, &[1e-4]),
     (Integrator::Bdf2, &[1e-4]),
 ];
@@ -19,14 +19,14 @@ pub const SETTINGS: [(Integrator, &[f64]); 5] = [
 /// An integrator and its tolerance. Written `dop853:1e-4`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// How to step.
+    /// The integrator.
     pub integrator: Integrator,
-    /// Relative error a substep.
+    /// Relative error of a substep.
     pub tolerance: f64,
 }
 
-/// All that a workload is measured at, in the order of [`SETTINGS`]; a large one at the default tolerance alone, since
-/// its cost a step is what is asked for.
+/// The settings of a workload, in the order of [`SETTINGS`]. A large workload has the default tolerance only, because
+/// it measures the cost of a step.
 pub fn settings(workload: &Workload) -> Vec<Setting> {
     let each = |(integrator, tolerances): (Integrator, &'static [f64])| {
         tolerances.iter().map(move |&tolerance| Setting { integrator, tolerance })
@@ -49,11 +49,11 @@ impl fmt::Display for Setting {
     }
 }
 
-/// Words that are no setting.
+/// The error for words that are no setting.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("`{words}` is no setting; write an integrator and a tolerance as in dop853:1e-4")]
 pub struct UnknownSetting {
-    /// What was given.
+    /// The words that were given.
     pub words: String,
 }
 

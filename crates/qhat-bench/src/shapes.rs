@@ -1,4 +1,5 @@
-//! The shapes of the workloads. Rods are 0.01 m long and particles 0.01 kg heavy where nothing else is said.
+//! The shapes of the workloads. Rods have a length of 0.01 m and particles a mass of 0.01 kg, unless another number is
+//! given.
 
 use crate::workload::{GRAVITY, Workload};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -36,7 +37,7 @@ impl Workload {
         self.lengths.push(length);
     }
 
-    /// A rod as long as its ends are apart.
+    /// A rod whose length is the distance of its ends.
     fn rod_between(&mut self, a: usize, b: usize) {
         let d = self.dimension;
         let square = |k: usize| (self.positions[b * d + k] - self.positions[a * d + k]).powi(2);
@@ -55,7 +56,7 @@ impl Workload {
         }
     }
 
-    /// A large workload is looked at for four short frames only.
+    /// Gives a large workload four short frames only.
     fn timed(self) -> Self {
         if self.is_large() { Workload { frame: 1.0 / 960.0, frames: 4, ..self } } else { self }
     }
@@ -76,9 +77,9 @@ pub fn heavy(ratio: f64) -> Workload {
     workload
 }
 
-/// n × n particles joined along rows and columns, two corners pinned: a planar net that hangs, or in 3D a cloth that is
-/// released from the horizontal. The row between the pins is a quarter of a circle: were it straight, the rods between
-/// two pins would depend on each other at the start.
+/// n × n particles joined along rows and columns, with two fixed corners: a planar net that hangs, or in 3D a cloth
+/// that is released from the horizontal. The row between the fixed corners is a quarter of a circle. In a straight row
+/// the rods between them would depend on each other at the start.
 pub fn net(n: usize, dimension: usize) -> Workload {
     let mut workload = Workload::new(dimension);
     let turn = FRAC_PI_2 / (n - 1) as f64;
@@ -105,8 +106,9 @@ pub fn net(n: usize, dimension: usize) -> Workload {
     workload.timed()
 }
 
-/// A Warren truss of equilateral panels that swings from its first joint: as many rods as hold it, so every force in it
-/// is determined. The redundant one has a brace more, in the middle.
+/// A Warren truss of equilateral panels that swings from its first joint. It is statically determinate: it has just
+/// enough rods to be rigid, so the tension of each is determined. The redundant truss has a further brace in the
+/// middle.
 pub fn truss(panels: usize, redundant: bool) -> Workload {
     let mut workload = Workload::new(2);
     let height = -LENGTH * 0.75_f64.sqrt();
@@ -132,8 +134,8 @@ pub fn truss(panels: usize, redundant: bool) -> Workload {
     workload.timed()
 }
 
-/// A crank of 0.01 m, a coupler of 0.03 m and a rocker of 0.025 m on a ground link of 0.03 m: the crank turns all the
-/// way.
+/// A crank of 0.01 m, a coupler of 0.03 m and a rocker of 0.025 m on a ground link of 0.03 m: the crank can turn
+/// full circle.
 pub fn four_bar() -> Workload {
     const CRANK: f64 = 0.01;
     const COUPLER: f64 = 0.03;
@@ -154,8 +156,8 @@ pub fn four_bar() -> Workload {
     workload
 }
 
-/// A planar hub with `spokes` rods all around, swinging from the far end of the first: every rod shares the hub, so
-/// J W Jᵀ is full.
+/// A planar hub with `spokes` rods all around, which swings from the far end of the first rod. All rods share the hub,
+/// so J W Jᵀ is a full matrix.
 pub fn star(spokes: usize) -> Workload {
     let mut workload = Workload::new(2);
     let hub = workload.particle([0.0; 3], false);
@@ -167,7 +169,7 @@ pub fn star(spokes: usize) -> Workload {
     workload.timed()
 }
 
-/// Chains of 20 links that have nothing to do with each other.
+/// Separate chains of 20 links.
 pub fn many(chains: usize) -> Workload {
     let mut workload = Workload::new(2);
     for chain in 0..chains {

@@ -1,20 +1,20 @@
-//! One line of the table and of the CSV.
+//! A row of results, as a line of the table and as a line of the CSV file.
 
 use crate::run::Outcome;
 use crate::setting::Setting;
 use crate::workload::Workload;
 use std::fmt;
 
-/// A workload, a setting and what came of them.
+/// The result of a workload under a setting.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The workload's name.
     pub workload: String,
-    /// Under what.
+    /// The setting.
     pub setting: Setting,
-    /// How many rows C has.
+    /// The number of rows of C.
     pub rows: usize,
-    /// What came of it.
+    /// The cost and the errors.
     pub outcome: Outcome,
 }
 
@@ -24,7 +24,7 @@ impl Row {
         ns_per_row_and_substep,substeps,factorizations,worst_length_error,rms_length_error,energy_error,\
         energy_error_max,ended";
 
-    /// Of one run.
+    /// The row of one run.
     pub fn new(workload: &Workload, setting: Setting, outcome: Outcome) -> Self {
         Row { workload: workload.name.clone(), setting, rows: workload.lengths.len(), outcome }
     }

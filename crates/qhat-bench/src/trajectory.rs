@@ -1,5 +1,5 @@
-//! The file an engine leaves behind: for every frame the positions \[m\] and then the velocities \[m/s\] of all
-//! particles, d·n numbers each, as little-endian f64 and nothing else.
+//! The file of trajectories that every engine writes: for each frame the positions \[m\] and then the velocities
+//! \[m/s\] of all particles, d·n numbers each, as little-endian f64 and nothing else.
 
 use crate::errors::Errors;
 use crate::workload::Workload;
@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Writer(BufWriter<File>);
 
 impl Writer {
-    /// Begins a file, over one that exists.
+    /// Creates a file; an existing file is replaced.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -37,7 +37,7 @@ impl Writer {
     }
 }
 
-/// Measures a trajectory; also tells how many whole frames it has.
+/// Measures the errors of a trajectory. Returns the number of complete frames, too.
 ///
 /// # Errors
 /// A file that cannot be read.

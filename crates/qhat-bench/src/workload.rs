@@ -1,29 +1,29 @@
-//! A workload in neutral form: what every engine is given, and nothing that belongs to one.
+//! A workload in neutral form: the input that all engines share, without anything that belongs to one of them.
 
 use qhat::{Dimension, Distance, Gravity, Particle, State, System};
 use serde::Serialize;
 
-/// Standard gravity as the workloads have it, downwards in y \[m/s²\].
+/// The gravity of all workloads, downwards in y \[m/s²\].
 pub(crate) const GRAVITY: f64 = 9.81;
 
-/// Particles, rods and gravity, and how long to look.
+/// Particles, rods and gravity, with the length and the number of frames to simulate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Workload {
-    /// What it is called, for example `chain100`.
+    /// The name, for example `chain100`.
     pub name: String,
     /// d, 2 or 3.
     pub dimension: usize,
     /// g \[m/s²\], d numbers.
     pub gravity: Vec<f64>,
-    /// Length of a frame \[s\]: every engine tells its state at the end of each.
+    /// Length of a frame \[s\]: every engine writes its state at the end of each frame.
     pub frame: f64,
-    /// How many frames.
+    /// The number of frames.
     pub frames: usize,
-    /// Where the particles start, at rest \[m\]; d·n numbers, particle after particle.
+    /// The positions at the start, where all particles are at rest \[m\]; d·n numbers, particle after particle.
     pub positions: Vec<f64>,
-    /// \[kg\], n numbers.
+    /// The masses \[kg\], n numbers.
     pub masses: Vec<f64>,
-    /// 1 where a particle is held, else 0; n numbers.
+    /// 1 for a fixed particle, else 0; n numbers.
     pub fixed: Vec<u8>,
     /// The two particles of each rod, one pair after the other.
     pub ends: Vec<usize>,
@@ -32,12 +32,12 @@ pub struct Workload {
 }
 
 impl Workload {
-    /// n, how many particles.
+    /// n, the number of particles.
     pub fn particle_count(&self) -> usize {
         self.masses.len()
     }
 
-    /// Whether two seconds would take minutes: what is asked of such sizes is how the cost of a step grows.
+    /// Whether two seconds of motion would take minutes. Workloads of this size measure how the cost of a step grows.
     pub fn is_large(&self) -> bool {
         self.lengths.len() > 9_000
     }
@@ -47,7 +47,7 @@ impl Workload {
         self.ends.chunks_exact(2).zip(&self.lengths).map(|(ends, &length)| (ends[0], ends[1], length))
     }
 
-    /// The same as qhat has it.
+    /// The workload as a system of qhat.
     pub fn system(&self) -> (System, State) {
         let mut builder = System::builder(if self.dimension == 2 { Dimension::Two } else { Dimension::Three });
         let ids: Vec<_> = (0..self.particle_count())
@@ -66,7 +66,7 @@ impl Workload {
         builder.build().expect("shapes are made of finite numbers, names of counts")
     }
 
-    /// The same in the file that every other engine reads.
+    /// The workload as the JSON file that the other engines read.
     pub fn json(&self) -> String {
         serde_json::to_string(self).expect("numbers and names are always JSON")
     }

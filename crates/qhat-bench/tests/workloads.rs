@@ -1,4 +1,4 @@
-//! The shapes are what they are called, and errors are measured as they are defined.
+//! The workloads have the shapes that their names promise, and errors are measured as they are defined.
 
 use qhat_bench::trajectory::{Writer, measure};
 use qhat_bench::{Errors, NAMES, Setting, Workload, run, settings};
@@ -61,8 +61,8 @@ fn settings_read_back_as_they_are_written() {
     }
 }
 
-/// A rod of 0.01 m stretched by a tenth, its particle of 0.01 kg let down by h = 0.002 m at v: by hand, from the
-/// definitions.
+/// Errors computed by hand from the definitions: a rod of 0.01 m is stretched by a tenth, and its particle of 0.01 kg
+/// slows down or is lowered by h = 0.002 m.
 #[test]
 fn errors_are_those_of_the_definitions() {
     let pendulum = workload("chain1");
@@ -72,7 +72,7 @@ fn errors_are_those_of_the_definitions() {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-14; // roundoff of numbers near 1
     assert!(near(errors.worst_length, 0.1), "{}", errors.worst_length);
     assert!(near(errors.rms_length(), 0.1 / 2.0_f64.sqrt()), "{}", errors.rms_length());
-    // T was ½ 0.01 1² = 0.005 J and is a quarter of it at the end, all of it out of nothing.
+    // The largest T is ½ 0.01 1² = 0.005 J. At the end T is a quarter of it. V and the energy at the start are 0.
     assert!(near(errors.energy(), 0.25), "{}", errors.energy());
     assert!(near(errors.energy_max(), 1.0), "{}", errors.energy_max());
     errors.frame(&pendulum, &[0.0, 0.0, 0.01, -0.002], &[0.0; 4]);
@@ -91,7 +91,7 @@ fn a_trajectory_tells_the_errors_of_its_run() {
     assert_eq!((frames, &outcome.ended), (workload.frames, &None));
     assert_eq!(errors.worst_length, outcome.errors.worst_length);
     assert_eq!(errors.energy(), outcome.errors.energy());
-    // What the engine promises of its default tolerances.
+    // The bounds that the engine documents for its default tolerances.
     assert!(errors.worst_length <= 1e-10 && errors.energy().abs() <= 1e-2, "{errors:?}");
 }
 

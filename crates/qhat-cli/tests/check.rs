@@ -99,7 +99,7 @@ fn plain_words() {
 }
 
 #[test]
-fn every_shipped_scene_passes() {
+fn long_every_shipped_scene_passes() {
     let folder = Folder::new();
     for scene in folder.qhat(&["scenes", "--json"]).well().json().as_array().unwrap() {
         let ran = folder.qhat(&["check", scene["name"].as_str().unwrap(), "--json"]).well();

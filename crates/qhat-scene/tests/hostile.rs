@@ -31,7 +31,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
     #[test]
-    fn changed_scenes_never_panic((text, format) in text(), edits in edits()) {
+    fn long_changed_scenes_never_panic((text, format) in text(), edits in edits()) {
         let mut bytes = text.into_bytes();
         for (place, removed, inserted) in edits {
             let start = place.index(bytes.len() + 1);
@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn any_text_never_panics(text in ".{0,200}", format in prop::sample::select(FORMATS.to_vec())) {
+    fn long_any_text_never_panics(text in ".{0,200}", format in prop::sample::select(FORMATS.to_vec())) {
         drop(load(&text, "any", format));
     }
 }

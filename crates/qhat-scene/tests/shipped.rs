@@ -72,7 +72,7 @@ fn every_scene_starts_where_its_file_says() {
 }
 
 #[test]
-fn every_scene_shows_what_it_says() {
+fn long_every_scene_shows_what_it_says() {
     let failures: Vec<String> = std::thread::scope(|scope| {
         let run = |name| move || (name, expectations::failures(&scene(name), LONG));
         let runs: Vec<_> = shipped().iter().map(|shipped| scope.spawn(run(shipped.name))).collect();
@@ -124,7 +124,7 @@ fn falls_apart(scene: &Scene, feedback: Feedback, duration: f64) -> Option<f64> 
 
 /// What the scene is for: the two menus of the source are what keeps it together.
 #[test]
-fn classic_needs_both_its_menus() {
+fn long_classic_needs_both_its_menus() {
     let scene = scene("classic");
     let menus = *scene.system.feedback();
     assert_eq!(scene.settings.integrator, Integrator::Euler);
@@ -135,7 +135,7 @@ fn classic_needs_both_its_menus() {
 
 /// The same scene in the modern forms under rattle needs neither.
 #[test]
-fn classic_holds_under_rattle() {
+fn long_classic_holds_under_rattle() {
     let scene = scene("classic");
     let system = scene.system.with_formulation(qhat::Formulation::Modern);
     let mut simulation = Simulation::new(system, scene.state.clone(), Settings::default()).unwrap();

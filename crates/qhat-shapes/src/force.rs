@@ -4,7 +4,7 @@ use crate::list::Shapes;
 use crate::shape::{Shape, ShapeKind, Source};
 use qhat::{Facet, Force, ParticleId};
 
-/// Adds the shapes of all forces; closed loops that pressure fills come last.
+/// Adds the shapes of all forces; closed loops under pressure come last.
 pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
     let mut outlines = Vec::new();
     for (i, force) in forces.iter().enumerate() {
@@ -17,7 +17,7 @@ pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
             }
             Force::Pressure(pressure) => add_facet(&pressure.facet, &mut outlines, shapes),
             Force::Gas(gas) => gas.facets().iter().for_each(|facet| add_facet(facet, &mut outlines, shapes)),
-            // Forces on one particle, on all of them, and from afar have no picture.
+            // Forces on one particle, forces on all particles and forces at a distance have no shape.
             Force::Gravity(_)
             | Force::Drag(_)
             | Force::PointForce(_)
@@ -29,9 +29,9 @@ pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
             | Force::InverseSquare(_)
             | Force::AirDrag(_)
             | Force::HarmonicForce(_)
-            // The arms of a torsion spring are drawn by what holds them.
+            // The arms of a torsion spring are drawn as the rods that hold them.
             | Force::TorsionSpring(_) => (),
-            // The kinds of a later engine have no picture until they are named here.
+            // A test fails for a kind that is not named above.
             _ => (),
         }
     }
@@ -46,12 +46,12 @@ fn add_spring(ends: [ParticleId; 2], rest: f64, shapes: &mut Shapes<'_>) {
 
 /// A loop of edges under pressure.
 struct Outline {
-    /// The force on its first edge.
+    /// The force on the first edge of the loop.
     of: Source,
     corners: Vec<ParticleId>,
 }
 
-/// Adds a triangle at once, and an edge to the outline that it goes on: edges of one loop follow each other.
+/// Adds the shape of a triangle, or adds an edge to the outline that it continues. Edges of one loop follow each other.
 fn add_facet(facet: &Facet, outlines: &mut Vec<Outline>, shapes: &mut Shapes<'_>) {
     match *facet {
         Facet::Edge([a, b]) => match outlines.last_mut() {

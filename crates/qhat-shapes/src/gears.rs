@@ -4,8 +4,9 @@ use crate::list::Shapes;
 use crate::shape::{Shape, ShapeKind};
 use qhat::{Gears, ParticleId};
 
-/// Adds the wheels of one constraint. The pitch circles of two wheels that mesh from outside share the distance of
-/// their centres by their teeth; every other wheel is drawn through the marked point of its arm.
+/// Adds the wheels of one constraint. For two wheels that mesh outside each other, the radii of the pitch circles are
+/// in the ratio of the teeth and add up to the distance of the centres. The circle of any other wheel passes through
+/// the marked point of its arm.
 pub(crate) fn add(gears: &Gears, shapes: &mut Shapes<'_>) {
     let wheel = |arm: [ParticleId; 2], radius| Shape::new(ShapeKind::Wheel, shapes.of, arm).sized(radius);
     let turns: Vec<_> = gears.turns().collect();
@@ -26,7 +27,7 @@ pub(crate) fn add(gears: &Gears, shapes: &mut Shapes<'_>) {
     }
 }
 
-/// How far apart two particles are \[m\].
+/// The distance of two particles \[m\].
 fn length([a, b]: [ParticleId; 2], shapes: &Shapes<'_>) -> f64 {
     let (d, q) = (shapes.system.dimension(), shapes.state.positions());
     (0..d).map(|k| q[d * a.index() + k] - q[d * b.index() + k]).map(|x| x * x).sum::<f64>().sqrt()

@@ -1,9 +1,10 @@
-//! Pictures of [`qhat`]: what a system looks like.
+//! Pictures of [`qhat`]: the shapes of a system, and stills of a system as SVG or PNG.
 //!
 //! [`shapes`] lists one shape for everything that can be drawn: rods, ropes, springs, nails, surfaces, curves, wheels.
-//! A shape names the particles it hangs on and gives points of the scene; it says nothing about colours or pixels, so
-//! that any front end can draw it. [`svg`] is one such front end: a still with a title, a legend and a scale bar.
-//! With the feature `png`, `png` turns that still into a PNG without a font or a program of the machine.
+//! A shape names the particles that it is attached to and gives points of the scene. It contains no colours and no
+//! pixels, so that any front end can draw it. [`svg`] is such a front end: it draws a still with a title, a legend and
+//! a scale bar. With the feature `png`, the function `png` turns the still into a PNG, without fonts or programs of the
+//! machine.
 //!
 //! ```
 //! use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};

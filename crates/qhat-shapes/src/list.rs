@@ -4,18 +4,19 @@ use crate::shape::{Shape, Source};
 use crate::{constraint, force};
 use qhat::{State, System};
 
-/// The shapes of a system at the time of its state: those of the constraints in their order, then those of the forces.
+/// The shapes of a system at the time of its state: first the shapes of the constraints in their order, then the shapes
+/// of the forces.
 ///
 /// Count, order, kinds and particles depend on the system alone. From frame to frame only points and sizes of driven
-/// shapes change; [`driven_shapes`] gives those at any time. A constraint or force without a picture (an expression,
-/// gravity) has no shape.
+/// shapes change; [`driven_shapes`] gives the driven shapes at any time. Some constraints and forces (an expression,
+/// gravity) have no shape.
 pub fn shapes(system: &System, state: &State) -> Vec<Shape> {
     shapes_at(system, state, state.time())
 }
 
-/// The driven shapes of a system at t \[s\], in the order in which they stand in [`shapes`].
+/// The driven shapes of a system at t \[s\], in the same order as in [`shapes`].
 ///
-/// Front ends that draw between two states ask at a time of their own.
+/// Front ends that draw between two states need the shapes at a time between those of the states.
 pub fn driven_shapes(system: &System, state: &State, t: f64) -> Vec<Shape> {
     shapes_at(system, state, t).into_iter().filter(|shape| shape.driven).collect()
 }
@@ -30,16 +31,16 @@ pub(crate) fn shapes_at(system: &System, state: &State, t: f64) -> Vec<Shape> {
     shapes.all
 }
 
-/// The shapes found so far, and what is needed to find more.
+/// The shapes found so far, with the system and the state.
 pub(crate) struct Shapes<'a> {
     pub(crate) system: &'a System,
     pub(crate) state: &'a State,
     /// t \[s\].
     pub(crate) t: f64,
-    /// Whose shapes are being added.
+    /// The constraint or force whose shapes are being added.
     pub(crate) of: Source,
     all: Vec<Shape>,
-    /// Places in `all` of surfaces and wires.
+    /// Indices into `all` of surfaces and wires.
     shared: Vec<usize>,
     links: usize,
 }
@@ -54,13 +55,13 @@ impl<'a> Shapes<'a> {
         self.all.push(shape);
     }
 
-    /// Adds the next of the system's links.
+    /// Adds the shape of the system's next link.
     pub(crate) fn push_link(&mut self, shape: Shape) {
         self.all.push(shape.link(self.links));
         self.links += 1;
     }
 
-    /// Adds a surface or wire unless it is there: one that many particles share is drawn once.
+    /// Adds a surface or wire unless the list has it already: a surface that many particles share is drawn once.
     pub(crate) fn push_shared(&mut self, shape: Shape) {
         let is_same = |&place: &usize| {
             let other = &self.all[place];

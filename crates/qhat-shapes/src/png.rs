@@ -5,15 +5,15 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg;
 use std::sync::Arc;
 
-/// Inter Regular, of the letters that qhat's own texts and most names of scenes need; made by scripts/embed-font.
+/// Inter Regular, with the letters that qhat's own texts and most names in scenes need; made by scripts/embed-font.
 const FONT: &[u8] = include_bytes!("../font/Inter-Regular.ttf");
 
-/// Why there is no PNG.
+/// The error of a PNG that cannot be made.
 #[derive(Debug)]
 pub enum PngError {
-    /// A width or height of 0, or more pixels than memory has room for.
+    /// A width or height of 0, or more pixels than fit into memory.
     Size([u32; 2]),
-    /// The picture could not be read or written, in the words of the library.
+    /// The picture could not be read or written; the text is the message of the library.
     Library(String),
 }
 
@@ -30,8 +30,8 @@ impl std::error::Error for PngError {}
 
 /// A still as the bytes of a PNG file: the same bytes for the same picture and options, on every run.
 ///
-/// All text is in the embedded font, Inter: no font of the machine is looked for. Letters that the font lacks (it has
-/// those of Latin, Greek and Cyrillic) are drawn as empty boxes.
+/// All text is in the embedded font, Inter; fonts of the machine are not used. The font has the letters of Latin, Greek
+/// and Cyrillic. Other letters are drawn as empty boxes.
 ///
 /// # Errors
 /// A size without pixels or with too many of them.
@@ -77,7 +77,7 @@ mod tests {
             let background = if dark { [0x12, 0x16, 0x1b, 255] } else { [0xf6, 0xf5, 0xf1, 255] };
             assert_eq!(colours[0], background);
             assert!(colours.iter().collect::<HashSet<_>>().len() > 100);
-            // Both ends of the scale of colours are in the legend at least.
+            // The legend has both ends of the scale of colours.
             let ends = if dark { [[255, 158, 66], [96, 172, 255]] } else { [[201, 88, 10], [22, 92, 204]] };
             for [r, g, b] in ends {
                 assert!(colours.contains(&[r, g, b, 255]), "{r} {g} {b}");
@@ -95,7 +95,7 @@ mod tests {
             let picture = Picture { system, state, time: 0.0, tension: &tension, broken: &[], name, note: "" };
             super::png(&picture, &Options::default()).unwrap()
         };
-        // Each letter has a shape of its own, and so has one that the font lacks.
+        // All letters look different from each other, and from a letter that the font lacks.
         let pictures: HashSet<Vec<u8>> = ["", "A", "é", "λ", "Ж", "²", "−", "長"].map(of).into();
         assert_eq!(pictures.len(), 8);
     }

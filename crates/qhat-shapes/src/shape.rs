@@ -1,19 +1,19 @@
-//! One thing to draw.
+//! Shape: one thing to draw, and the kinds of shapes.
 
 use qhat::{Anchor, Driven, DrivenPoint, ParticleId};
 
 /// The constraint or force that a shape belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Its place in [`qhat::System::constraints`].
+    /// The index of the constraint in [`qhat::System::constraints`].
     Constraint(usize),
-    /// Its place in [`qhat::System::forces`].
+    /// The index of the force in [`qhat::System::forces`].
     Force(usize),
 }
 
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
-        /// What a shape is drawn as. In brackets its particles, then its points \[m\], then its size \[m\].
+        /// The kind of a shape. In brackets: its particles, then its points \[m\], then its size \[m\].
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum ShapeKind { $($(#[$doc])* $kind,)* }
 
@@ -32,16 +32,16 @@ macro_rules! kinds {
 kinds! {
     /// A link of one length \[a, b; ; length\].
     Rod = "rod",
-    /// A link that is taut at its length and slack below \[a, b; ; length\].
+    /// A link that is taut at its length and slack at less \[a, b; ; length\].
     Rope = "rope",
-    /// A link that pushes at its shortest length and is loose beyond, up to its longest if it has one
+    /// A link that pushes at its shortest length and is loose at more, up to its longest length if it has one
     /// \[a, b; ; shortest length\].
     Strut = "strut",
     /// A rod whose length or other end is driven \[a, b; ; length\] or \[a; b; length\].
     DrivenRod = "driven-rod",
     /// A piece of a rope over pulleys \[a, b; ; \].
     Cord = "cord",
-    /// Two particles that belong together with nothing solid between them \[a, b; ; \].
+    /// Two particles that a constraint couples without a solid part between them \[a, b; ; \].
     Tie = "tie",
     /// A spring, linear or not \[a, b; ; rest length\].
     Spring = "spring",
@@ -55,13 +55,13 @@ kinds! {
     Line = "line",
     /// A circle across an axis \[centre; axis; radius\] or \[; centre, axis; radius\].
     Ring = "ring",
-    /// A ball that particles stay out of \[; centre; radius\].
+    /// A ball; particles stay outside \[; centre; radius\].
     Ball = "ball",
-    /// A sphere that particles stay in, or on \[; centre; radius\].
+    /// A sphere; particles stay inside or on it \[; centre; radius\].
     Bowl = "bowl",
-    /// Ground that nothing is below \[; point, unit normal; \].
+    /// Ground; particles stay above it \[; point, unit normal; \].
     Ground = "ground",
-    /// A box that particles stay out of \[; centre, half its size; \].
+    /// A box; particles stay outside \[; centre, half its size; \].
     Box = "box",
     /// An angle from the arm a-b to the arm c-d \[a, b, c, d; ; \], or from a direction to the arm c-d
     /// \[c, d; direction; \].
@@ -74,23 +74,23 @@ kinds! {
     Plane = "plane",
 }
 
-/// One thing to draw: its kind, the particles it hangs on and points of the scene. [`ShapeKind`] says for each kind
-/// what `particles`, `points` and `size` are.
+/// One thing to draw: its kind, the particles that it is attached to, and points of the scene. [`ShapeKind`] lists the
+/// particles, points and size of each kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// What it is drawn as.
+    /// The kind.
     pub kind: ShapeKind,
-    /// The constraint or force it belongs to; of a surface or wire that several constraints share, the first of them.
+    /// The constraint or force that the shape belongs to. If several constraints share a surface or wire, the first.
     pub of: Source,
-    /// Particles, whose places the state has.
+    /// The particles; their positions are in the state.
     pub particles: Vec<ParticleId>,
     /// Points and directions of the scene \[m\]; z = 0 in two dimensions.
     pub points: Vec<[f64; 3]>,
-    /// A length \[m\]; 0 where the kind has none.
+    /// A length \[m\]; 0 for a kind without a size.
     pub size: f64,
-    /// Whether points and size follow t; those of every other shape stay as they are.
+    /// Whether points and size change with t. They are constant for every other shape.
     pub driven: bool,
-    /// Of a rod, rope or strut, its place in [`qhat::System::links`], in `tension` and among the broken links.
+    /// For a rod, rope or strut, its index in [`qhat::System::links`], in `tension` and among the broken links.
     pub link: Option<usize>,
 }
 
@@ -111,13 +111,13 @@ impl Shape {
         Shape { link: Some(place), ..self }
     }
 
-    /// Notes that the shape follows t if one of these numbers does.
+    /// Marks the shape as driven if one of these numbers is driven.
     pub(crate) fn following<'a>(self, numbers: impl IntoIterator<Item = &'a Driven>) -> Self {
         let driven = numbers.into_iter().any(|number| matches!(number, Driven::Function(_)));
         Shape { driven: self.driven || driven, ..self }
     }
 
-    /// Puts the centre of the shape first: a particle, or a point at t \[s\].
+    /// Inserts the centre of the shape as its first particle, or as its first point at t \[s\].
     pub(crate) fn around(mut self, center: &Anchor, t: f64) -> Self {
         match center {
             Anchor::Particle(particle) => self.particles.insert(0, *particle),
@@ -130,7 +130,7 @@ impl Shape {
     }
 }
 
-/// The point at t \[s\] \[m\].
+/// A driven point at t \[s\], in metres.
 pub(crate) fn value(point: &DrivenPoint, t: f64) -> [f64; 3] {
     [0, 1, 2].map(|k: usize| point[k].value(t))
 }

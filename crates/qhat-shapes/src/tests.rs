@@ -1,4 +1,4 @@
-//! The list of shapes: kinds, particles, points and sizes of every family, and what changes with time.
+//! The list of shapes: kinds, particles, points and sizes of every family, and the changes with time.
 
 #![expect(non_snake_case, reason = "the corners of a square are A, B, C, D")]
 
@@ -32,7 +32,7 @@ fn system(constraints: impl IntoIterator<Item = Constraint>) -> (System, qhat::S
     builder.build().unwrap()
 }
 
-/// The shapes of constraints on the corners of that square.
+/// The shapes of constraints on the corners of a square of 3 m.
 fn drawn(constraints: impl IntoIterator<Item = Constraint>) -> Vec<Shape> {
     let (system, state) = system(constraints);
     shapes(&system, &state)
@@ -163,4 +163,16 @@ fn angles_have_two_arms_or_a_direction_and_areas_their_corners() {
         ([A, D].as_slice(), [[1.0, 0.0, 0.0]].as_slice())
     );
     assert_eq!(all[2].particles, [A, B, C, D]);
+}
+
+/// The engine's enums may grow, so the compiler does not ask for a kind that this crate forgot.
+#[test]
+fn every_kind_is_named_here() {
+    let missing = |source: &str, of: &str, kinds: &[&str]| -> Vec<String> {
+        let names = kinds.iter().map(|kind| format!("{of}::{kind}("));
+        names.filter(|name| !source.contains(name)).collect()
+    };
+    let mut found = missing(include_str!("constraint.rs"), "Constraint", qhat::Constraint::KINDS);
+    found.extend(missing(include_str!("force.rs"), "Force", qhat::Force::KINDS));
+    assert!(found.is_empty(), "crates/qhat-shapes/src does not say how to draw {found:?}");
 }

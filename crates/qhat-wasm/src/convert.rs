@@ -1,4 +1,5 @@
-//! The engine's records as JavaScript records, field by field, and the page's controls as calls of the engine.
+//! Conversion of the engine's records to JavaScript records, field by field, and of the page's controls to calls of the
+//! engine.
 
 use crate::record::{Record, error, list, number, numbers, point, strings, text};
 use crate::{Controls, Projection, Shapes, StepReport, Structure, Terms};
@@ -9,7 +10,8 @@ use qhat::{
 use qhat_shapes::{Shape, Source};
 use wasm_bindgen::{JsCast, JsValue};
 
-/// J and A cross only where a person could read them: cells of the larger one, m × N.
+/// Most cells of J or A, whichever is larger, for which both are passed to the page. A person cannot read larger
+/// matrices.
 const LARGEST_GRID: usize = 4096;
 
 pub(crate) fn structure(simulation: &Simulation, name: &str, description: &str, duration: f64) -> Structure {
@@ -65,7 +67,7 @@ pub(crate) fn energy(energy: &qhat::Energy) -> Record {
 }
 
 pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
-    // What goes with auto's choice is shown beside that choice, not among the warnings.
+    // The warning about auto's choice is shown beside the choice and not among the other warnings.
     let is_choice = |warning: &&Warning| matches!(warning, Warning::TooStiff { .. });
     let too_stiff = report.warnings.iter().find(is_choice);
     let warnings = report.warnings.iter().filter(|warning| !is_choice(warning));
@@ -87,7 +89,7 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .finish()
 }
 
-/// What happened, to which constraint, and when; of an impact also how fast it closed in.
+/// An event: its kind, its constraint and its time; for an impact also the closing speed.
 fn event(event: &qhat::Event) -> Record {
     let speed = match event.kind {
         EventKind::Impact { speed } => Some(speed),
@@ -160,10 +162,11 @@ pub(crate) fn controls(simulation: &Simulation) -> Controls {
         .finish()
 }
 
-/// Sets only what differs: a projection or a new factorization that nobody asked for would change the motion.
+/// Sets only the controls that differ. Setting a control to its present value could cause a projection or a new
+/// factorization, which would change the motion.
 pub(crate) fn set_controls(simulation: &mut Simulation, wanted: &JsValue) -> Result<(), JsValue> {
     let integrator = text(wanted, "integrator").parse().map_err(|cause| error("SettingsError", cause))?;
-    // A fraction, a negative number or NaN becomes a count that the engine takes or refuses.
+    // The cast turns a fraction, a negative number or NaN into a count, which the engine accepts or rejects.
     let count = |name| number(wanted, name) as usize;
     let settings = Settings {
         h: number(wanted, "h"),
@@ -196,16 +199,16 @@ pub(crate) fn set_controls(simulation: &mut Simulation, wanted: &JsValue) -> Res
         let chosen = match forms.as_str() {
             "classic" => Formulation::Classic,
             "modern" => Formulation::Modern,
-            _ => return Ok(()), // `mixed` is what a scene may be, not what a person can choose
+            _ => return Ok(()), // `mixed` describes a scene and cannot be chosen
         };
         simulation.set_formulation(chosen).map_err(|cause| error("StepError", cause))?;
     }
     Ok(())
 }
 
-/// Which forms the constraints have: all of one formulation, or mixed.
+/// The formulation of the constraints; `mixed` if they have different formulations.
 fn formulation(system: &System) -> &'static str {
-    // What has but one form belongs to either.
+    // A constraint with one form only belongs to both formulations.
     let classic = system.constraints().iter().filter_map(|named| {
         if let Constraint::Distance(distance) = &named.constraint {
             Some(distance.form == DistanceForm::Squared)

@@ -1,6 +1,7 @@
-//! qhat in the browser: conversions between the engine's types and JavaScript values. Nothing is computed here.
+//! qhat in the browser: conversions between the engine's types and JavaScript values. No physics is computed here.
 //!
-//! The types that cross are declared in `types.d.ts` beside this file and become part of the generated declarations.
+//! The types of these values are declared in `types.d.ts` beside this file and become part of the generated
+//! declarations.
 
 mod convert;
 mod record;
@@ -61,7 +62,7 @@ pub fn shipped_scenes() -> ShippedScenes {
     list(records).unchecked_into()
 }
 
-/// The integrators, and what sets them apart for a person who chooses.
+/// The integrators, with the properties that help a person to choose.
 #[wasm_bindgen]
 pub fn integrators() -> Integrators {
     let records = Integrator::ALL.map(|integrator| {
@@ -73,13 +74,13 @@ pub fn integrators() -> Integrators {
     list(records).unchecked_into()
 }
 
-/// The row solves a frame that `auto` may take where a scene does not say.
+/// The limit of row solves in a frame for `auto`, if a scene does not give one.
 #[wasm_bindgen]
 pub fn default_frame_work() -> f64 {
     Settings::default().frame_work as f64
 }
 
-/// A scene that runs.
+/// A running simulation of a scene.
 #[wasm_bindgen]
 pub struct Simulation {
     inner: qhat::Simulation,
@@ -90,8 +91,8 @@ pub struct Simulation {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Reads a scene, JSON if the name of its source says so, else TOML, and starts it. Throws `SceneErrors` or
-    /// `StepError`.
+    /// Reads a scene and starts it. The scene is JSON if the name of its source ends in `.json`, else TOML. Throws
+    /// `SceneErrors` or `StepError`.
     #[wasm_bindgen(constructor)]
     pub fn new(text: &str, source_name: &str) -> Result<Simulation, JsValue> {
         let scene = qhat_scene::load(text, source_name, Format::from_path(source_name))
@@ -100,12 +101,12 @@ impl Simulation {
         Ok(Simulation { inner, name: scene.name, description: scene.description, duration: scene.duration })
     }
 
-    /// What the scene is made of, in its present forms.
+    /// The structure of the scene, in the present formulation.
     pub fn structure(&self) -> Structure {
         convert::structure(&self.inner, &self.name, &self.description, self.duration)
     }
 
-    /// The driven shapes at a time \[s\], in the order in which they stand among the shapes of the structure.
+    /// The driven shapes at a time \[s\], in the same order as among the shapes of the structure.
     pub fn driven_shapes(&self, time: f64) -> Shapes {
         let (system, state) = (self.inner.system(), self.inner.state());
         convert::shapes(system, &qhat_shapes::driven_shapes(system, state, time))
@@ -126,12 +127,12 @@ impl Simulation {
         self.inner.state().velocities().to_vec()
     }
 
-    /// Tension of every link \[N\], positive where it pulls, 0 while slack.
+    /// Tension of every link \[N\], positive if the link pulls its ends together, 0 while slack.
     pub fn tension(&mut self) -> Vec<f64> {
         self.inner.tension()
     }
 
-    /// Which links are broken, by their places.
+    /// The indices of the broken links.
     pub fn broken(&self) -> Vec<u32> {
         let broken = self.inner.system().broken_links(self.inner.state());
         broken.into_iter().map(|place| place as u32).collect()
@@ -147,28 +148,28 @@ impl Simulation {
         convert::terms(&self.inner.terms())
     }
 
-    /// What it took to make the start consistent.
+    /// The projection that made the start consistent.
     pub fn projection(&self) -> Projection {
         convert::projection(self.inner.projection())
     }
 
-    /// One step of h. Throws `StepError`; the last good state stays.
+    /// One step of h. Throws `StepError`; the last good state is kept.
     pub fn step(&mut self) -> Result<StepReport, JsValue> {
         let report = self.inner.step().map_err(|cause| error("StepError", cause))?;
         Ok(convert::report(&report))
     }
 
-    /// Back to where it started, with nothing held; controls stay as they are. Throws `StepError`.
+    /// Returns to the start and releases the hand; the controls are kept. Throws `StepError`.
     pub fn reset(&mut self) -> Result<(), JsValue> {
         self.inner.reset().map_err(|cause| error("StepError", cause))
     }
 
-    /// Everything the page's controls show.
+    /// The values of all controls of the page.
     pub fn controls(&self) -> Controls {
         convert::controls(&self.inner)
     }
 
-    /// Sets what differs from the present controls. Throws `SettingsError` or `StepError`.
+    /// Sets the controls that differ from the present ones. Throws `SettingsError` or `StepError`.
     pub fn set_controls(&mut self, controls: &Controls) -> Result<(), JsValue> {
         convert::set_controls(&mut self.inner, controls)
     }
@@ -184,7 +185,7 @@ impl Simulation {
         self.inner.drag_to(convert::target(target)).map_err(|cause| error("ForceError", cause))
     }
 
-    /// Lets go.
+    /// Removes the mouse spring.
     pub fn release(&mut self) {
         self.inner.release();
     }

@@ -13,7 +13,7 @@ impl Record {
     }
 
     pub(crate) fn with(self, name: &str, value: impl Into<JsValue>) -> Self {
-        // setting a field of a plain object that is ours cannot fail
+        // Setting a field of a plain object cannot fail.
         let _ = Reflect::set(&self.0, &name.into(), &value.into());
         self
     }
@@ -33,7 +33,7 @@ pub(crate) fn numbers(values: &[f64]) -> Float64Array {
     Float64Array::from(values)
 }
 
-/// An ordinary array, for anything but long runs of numbers.
+/// An ordinary array, for lists other than long arrays of numbers.
 pub(crate) fn list<T: Into<JsValue>>(items: impl IntoIterator<Item = T>) -> Array {
     items.into_iter().map(Into::into).collect()
 }
@@ -49,7 +49,7 @@ pub(crate) fn error(kind: &str, cause: impl Display) -> JsValue {
     error.into()
 }
 
-/// A number field of an object from JavaScript; NaN where there is none, which every setting refuses.
+/// A number field of an object from JavaScript. A missing number becomes NaN, which every setting rejects.
 pub(crate) fn number(object: &JsValue, name: &str) -> f64 {
     field(object, name).as_f64().unwrap_or(f64::NAN)
 }
@@ -58,7 +58,7 @@ pub(crate) fn text(object: &JsValue, name: &str) -> String {
     field(object, name).as_string().unwrap_or_default()
 }
 
-/// A list of three numbers; NaN where one is missing.
+/// A list of three numbers; a missing number becomes NaN.
 pub(crate) fn point(object: &JsValue, name: &str) -> [f64; 3] {
     let list = Array::from(&field(object, name));
     std::array::from_fn(|k| list.get(k as u32).as_f64().unwrap_or(f64::NAN))

@@ -1,5 +1,5 @@
-// The records that cross the border between the engine and the page. Field names, and in Terms also their order, are
-// those of the Rust structs; arrays are flat, particle after particle: x1 y1 x2 y2 …; SI units.
+// The records that the engine and the page exchange. Field names, and in Terms also their order, are the same as in the
+// Rust structs. Arrays are flat, particle after particle: x1 y1 x2 y2 …; SI units.
 
 export type IntegratorName =
   | 'auto'
@@ -11,9 +11,9 @@ export type IntegratorName =
   | 'dop853'
   | 'implicit'
   | 'bdf2';
-/** By which path the constraints were solved. */
+/** The way in which the constraints were solved. */
 export type SolverName = 'rows' | 'lanes' | 'end of step';
-/** `mixed`: a scene may write each constraint in the form it likes */
+/** `mixed`: the constraints of a scene have different formulations */
 export type FormulationName = 'modern' | 'classic' | 'mixed';
 
 export interface IntegratorFacts {
@@ -33,64 +33,64 @@ export interface Shipped {
   text: string;
 }
 
-/** What a shape is drawn as. In brackets its particles, then its points, then its size in m. */
+/** The kind of a shape. In brackets: its particles, then its points, then its size in m. */
 export type ShapeKind =
-  /** one length [a, b; ; length] */
+  /** holds one length [a, b; ; length] */
   | 'rod'
-  /** taut at its length, slack below [a, b; ; length] */
+  /** taut at its length, slack at less [a, b; ; length] */
   | 'rope'
-  /** pushes at its length, loose beyond, to its other limit if it has one [a, b; ; shortest length] */
+  /** pushes at its shortest length, loose at more, up to its longest length if it has one [a, b; ; shortest length] */
   | 'strut'
   /** a rod whose length or other end is driven [a, b; ; length] or [a; b; length] */
   | 'driven-rod'
   /** a piece of a rope over pulleys [a, b; ; 0] */
   | 'cord'
-  /** belongs together, with nothing solid between [a, b; ; 0] */
+  /** a constraint couples the two, without a solid part between them [a, b; ; 0] */
   | 'tie'
   /** a spring, linear or not [a, b; ; rest length] */
   | 'spring'
-  /** pushes and pulls by itself [a, b; ; 0] */
+  /** a push and pull along the line of two particles [a, b; ; 0] */
   | 'actuator'
   /** holds a particle to a point; driven or not [particle; point; 0] */
   | 'nail'
   /** a curve in the scene [; its points in order; 0] */
   | 'wire'
-  /** endless [a, b], [a; direction] or [; point, direction] */
+  /** an endless straight line [a, b], [a; direction] or [; point, direction] */
   | 'line'
   /** a circle across an axis [centre; axis; radius] or [; centre, axis; radius] */
   | 'ring'
-  /** filled, to be stayed out of [; centre; radius] */
+  /** a ball; particles stay outside [; centre; radius] */
   | 'ball'
-  /** to be stayed in, or on [; centre; radius] */
+  /** a sphere; particles stay inside or on it [; centre; radius] */
   | 'bowl'
-  /** nothing is below it [; point, unit normal] */
+  /** particles stay above it [; point, unit normal] */
   | 'ground'
-  /** to be stayed out of [; centre, half its size] */
+  /** a box; particles stay outside [; centre, half its size] */
   | 'box'
-  /** from the arm a-b to the arm c-d [a, b, c, d], or from a direction to it [c, d; direction] */
+  /** the angle from the arm a-b, or from a direction, to the arm c-d [a, b, c, d] or [c, d; direction] */
   | 'angle'
-  /** the circle in which a wheel meets others [centre, a point of it; ; radius] */
+  /** the pitch circle of a wheel [centre, a point of it; ; radius] */
   | 'wheel'
   /** a filled polygon [its corners in order] */
   | 'area'
-  /** [; point, normal] */
+  /** an endless plane [; point, normal] */
   | 'plane';
 
-/** The constraint or force that a shape belongs to: its place among the scene's constraints or forces. */
+/** The constraint or force that a shape belongs to, with its index among the constraints or forces of the scene. */
 export interface Source {
   list: 'constraint' | 'force';
   index: number;
 }
 
-/** What a shape with a tension (rod, rope, strut) has beside it. */
+/** The further fields of a shape with a tension (rod, rope, strut). */
 export interface Link {
-  /** its place in `tension()`, in `Terms.tension` and among the numbers of `broken()` */
+  /** its index in `tension()` and in `Terms.tension`, and its number in `broken()` */
   place: number;
-  /** the least its ends are apart, m; null for a rope */
+  /** the least distance of its ends, m; null for a rope */
   shortest: number | null;
-  /** the most its ends are apart, m; null for a strut that lets them go; of a rod both are its length */
+  /** the largest distance of its ends, m; null for a loose strut; a rod has its length in both fields */
   longest: number | null;
-  /** which multipliers are its own; of two limits the longest comes first */
+  /** the indices of its multipliers; with two limits, the longest comes first */
   rows: number[];
 }
 
@@ -98,25 +98,25 @@ export interface Link {
 export interface Shape {
   kind: ShapeKind;
   of: Source;
-  /** the name of its constraint; '' where it is of a force */
+  /** the name of its constraint; '' for a force */
   name: string;
   particles: number[];
   /** m, three numbers each */
   points: Float64Array;
   /** m */
   size: number;
-  /** its points and its size follow t; without, they stay as they are */
+  /** whether its points and its size change with t */
   driven: boolean;
-  /** of rods, ropes and struts, in the order of `tension()`; null for all others */
+  /** for rods, ropes and struts, in the order of `tension()`; null for all other shapes */
   link: Link | null;
 }
 
-/** What a scene is made of: all that does not change while it runs. */
+/** The parts of a scene, which do not change while it runs. */
 export interface Structure {
   name: string;
   description: string;
   dimension: 2 | 3;
-  /** how long the scene is meant to run, s */
+  /** the intended time of a run, s */
   duration: number;
   particle_names: string[];
   row_names: string[];
@@ -127,14 +127,14 @@ export interface Structure {
   shapes: Shape[];
 }
 
-/** Everything the page's controls set. */
+/** The values of all controls of the page. */
 export interface Controls {
   /** s */
   h: number;
   integrator: IntegratorName;
-  /** of implicit and bdf2: Newton iterations a frame */
+  /** for implicit and bdf2: most Newton iterations in a frame */
   frame_budget: number;
-  /** of auto: row solves a frame before it goes over to bdf2 */
+  /** for auto: row solves in a frame after which it changes to bdf2 */
   frame_work: number;
   formulation: FormulationName;
   /** 1/s² */
@@ -156,19 +156,19 @@ export interface Energy {
   kinetic: number;
   potential: number;
   total: number;
-  /** T + V less all that came in since the start: constant for an exact integrator */
+  /** T + V minus the energy supplied since the start: constant for an exact integrator */
   balance: number;
 }
 
-/** Something that happened at a moment. */
+/** An event: a change at one moment. */
 export interface StepEvent {
-  /** `impact`: it was hit; `closed`, `opened`: it acts, or does not, from now on; `broke`: for good */
+  /** `impact`: hit above the rest speed; `closed`, `opened`: acts, or does not act, from now on; `broke`: for good */
   kind: 'impact' | 'closed' | 'opened' | 'slipped' | 'stuck' | 'broke';
-  /** its name */
+  /** the name of the constraint */
   constraint: string;
   /** s */
   time: number;
-  /** of an impact: how fast it closed in, m/s */
+  /** for an impact: the closing speed, m/s */
   speed?: number;
 }
 
@@ -183,19 +183,19 @@ export interface StepReport {
   max_residual_rate: number;
   max_relative_length_error: number;
   energy: Energy;
-  /** who carried the state; with auto, whom it chose */
+  /** the integrator of this step; with auto, the integrator that auto chose */
   integrator: IntegratorName;
   solver: SolverName;
-  /** what opened, closed, slipped, stuck or broke, in its order */
+  /** the events of the step, in the order of time */
   events: StepEvent[];
-  /** why auto went over to bdf2; null where it did not */
+  /** the reason for which auto changed to bdf2; null if it did not */
   too_stiff: string | null;
   warnings: string[];
 }
 
-/** What it took to bring the start onto C = 0 and Ċ = 0. */
+/** The projection that brought the start onto C = 0 and Ċ = 0. */
 export interface Projection {
-  /** m, the farthest a particle was moved; 0 if the start was consistent */
+  /** the largest displacement of a particle, m; 0 if the start was consistent */
   moved: number;
   /** m/s */
   velocity_changed: number;
@@ -203,7 +203,7 @@ export interface Projection {
   iterations: number;
 }
 
-/** Every symbol of one evaluation, in the order it is computed. */
+/** Every symbol of one evaluation, in the order of computation. */
 export interface Terms {
   /** s */
   time: number;
@@ -213,10 +213,10 @@ export interface Terms {
   applied_forces: Float64Array;
   residual: Float64Array;
   residual_rate: Float64Array;
-  /** m × N, row after row; null where the system is too large to show */
+  /** m × N, row after row; null if the system is too large to show */
   jacobian: Float64Array | null;
   acceleration_bias: Float64Array;
-  /** m × m, row after row, before ε; null where the system is too large to show */
+  /** m × m, row after row, before ε; null if the system is too large to show */
   constraint_matrix: Float64Array | null;
   rhs_bias: Float64Array;
   rhs_forces: Float64Array;
@@ -226,11 +226,11 @@ export interface Terms {
   multipliers: Float64Array;
   constraint_forces: Float64Array;
   accelerations: Float64Array;
-  /** N, one per link, signed: + is pull, 0 while slack */
+  /** N, one for each link: positive if it pulls its ends together, 0 while slack */
   tension: Float64Array;
-  /** one per row: it takes no part (an open contact, what is broken) */
+  /** one for each row: true if the row is inactive (an open contact, a broken constraint) */
   is_open: boolean[];
-  /** of A; null where A is singular and too large for the rank to be counted */
+  /** the rank of A; null if A is singular and too large to count its rank */
   rank: number | null;
   warnings: string[];
 }

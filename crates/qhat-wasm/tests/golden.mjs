@@ -1,5 +1,6 @@
-// WebAssembly computes the bits of the native engine: the cases and hashes of crates/qhat-scene/tests/golden.txt, run
-// through what `scripts/build-wasm --node` has built. `node --test crates/qhat-wasm/tests/golden.mjs`
+// WebAssembly computes the same bits as the native engine: runs the cases of crates/qhat-scene/tests/golden.txt through
+// the package that `scripts/build-wasm --node` builds, and compares the hashes. `node --test
+// crates/qhat-wasm/tests/golden.mjs`
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

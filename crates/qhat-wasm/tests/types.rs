@@ -1,4 +1,4 @@
-//! What TypeScript is told is what Rust has.
+//! The declarations for TypeScript agree with the types in Rust.
 
 const TYPES: &str = include_str!("../src/types.d.ts");
 
@@ -13,7 +13,7 @@ fn fields(interface: &str) -> Vec<&'static str> {
 #[test]
 fn terms_have_the_fields_of_the_notation_table_in_its_order() {
     let mut words: Vec<&str> = qhat::NOTATION.iter().map(|row| row.word).collect();
-    words.push("warnings"); // words, and no quantity with a symbol
+    words.push("warnings"); // text, so the table of symbols does not have it
     assert_eq!(fields("Terms"), words);
 }
 
@@ -24,7 +24,7 @@ fn every_integrator_is_named() {
     }
 }
 
-/// Every kind that is made is declared, and every one that is declared is made.
+/// Every kind of shape is declared, and every declared kind exists.
 #[test]
 fn every_kind_of_shape_is_named() {
     let declared: Vec<&str> = TYPES[TYPES.find("export type ShapeKind").unwrap()..]
@@ -44,7 +44,7 @@ fn every_solver_is_named() {
     }
 }
 
-/// The page adds one field, why auto chose as it did, and has every other by its Rust name.
+/// The page adds one field, the reason of auto's choice, and has every other field by its Rust name.
 #[test]
 fn a_report_has_the_fields_of_the_engine() {
     let report = format!("{:#?}", qhat::StepReport::default());

@@ -157,12 +157,8 @@ mod threads;
 pub use allowed::{GeometryError, ValueError};
 pub use body::{Body, BodyError};
 pub use cluster::rigid_rods;
-pub use constraint::{
-    Anchor, Angle, Area, Constraint, ConstraintError, Curve, Custom, CustomConstraint, Direction, Distance,
-    DistanceForm, DrivenPoint, ExpressionConstraint, Formulation, Gears, Jacobian, Lengths, Limits, Line, Link, Nail,
-    NailForm, NamedConstraint, Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Relation, Rope, Strut,
-    Surface, Volume,
-};
+#[doc(inline)]
+pub use constraint::*;
 pub use driven::Driven;
 pub use energy::Energy;
 pub use ensemble::{run_all, step_all};

@@ -9,7 +9,7 @@ fn settings(frame_work: usize) -> Settings {
 
 /// What can be followed is dop853's, bit for bit.
 #[test]
-fn with_work_to_spare_it_is_dop853() {
+fn long_with_work_to_spare_it_is_dop853() {
     for (system, state) in [systems::chain(100, 1000.0), systems::net(4), systems::double_pendulum()] {
         let mut auto =
             Simulation::new(system.clone(), state.clone(), systems::settings(Integrator::Auto, FRAME)).unwrap();

@@ -5,7 +5,7 @@ use crate::systems::{self, FRAME};
 use qhat::{Dimension, Distance, Formulation, Integrator, Particle, Settings, Simulation, Solver, System, Warning};
 
 #[test]
-fn lanes_move_any_open_chains_as_the_general_path_does() {
+fn long_lanes_move_any_open_chains_as_the_general_path_does() {
     let settings = Settings { tolerance: 1e-11, ..systems::settings(Integrator::Dop853, FRAME) };
     for seed in 0..100 {
         let run = |is_general: bool| {
@@ -34,7 +34,7 @@ fn lanes_move_any_open_chains_as_the_general_path_does() {
 
 /// Of the heaviest loads the lanes see no more than a small w.
 #[test]
-fn lanes_take_a_load_of_a_billion() {
+fn long_lanes_take_a_load_of_a_billion() {
     for seed in 0..20 {
         let (system, state) = open_chains(seed, 1e9, false);
         let settings = systems::settings(Integrator::Auto, FRAME);

@@ -237,7 +237,7 @@ fn bridge() -> (SystemBuilder, usize) {
 }
 
 #[test]
-fn a_bridge_of_ropes_and_struts_comes_to_rest() {
+fn long_a_bridge_of_ropes_and_struts_comes_to_rest() {
     let (builder, _) = bridge();
     let (simulation, lowest, risen) = settle(builder, 10.0);
     assert!(lowest > -1e-8, "{lowest:e}");

@@ -100,6 +100,40 @@ fn every_link_in_a_document_leads_somewhere() {
     assert!(links > 5, "the search for links found only {links}");
 }
 
+/// The worked example names a file in the head of each step, and quotes lines of it. Its tests exist by these names.
+#[test]
+fn adding_a_constraint_quotes_the_tree() {
+    let page = read("docs/adding-a-constraint.md");
+    let (mut files, mut lines) = (0, 0);
+    for step in page.split("\n## ").skip(1) {
+        let Some(path) = step.lines().next().unwrap().split('`').nth(1) else { continue };
+        let source = read(path);
+        for quoted in step.split("\n```").skip(1).step_by(2) {
+            for line in quoted.lines().skip(1).map(str::trim).filter(|line| !line.is_empty()) {
+                assert!(source.contains(line), "docs/adding-a-constraint.md quotes a line that {path} lacks:\n{line}");
+                lines += 1;
+            }
+        }
+        files += 1;
+    }
+    assert!(files == 10 && lines > 30, "the search for quotations found {lines} lines of {files} files");
+
+    let mut tests = String::new();
+    for folder in ["crates/qhat/tests/kinds", "crates/qhat-scene/tests", "crates/qhat-schema-test/tests"] {
+        let entries = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
+        for path in entries.filter(|path| path.extension().is_some_and(|end| end == "rs")) {
+            tests += &fs::read_to_string(path).unwrap();
+        }
+    }
+    let words = page.split('`').skip(1).step_by(2);
+    let named: Vec<&str> = words.filter(|word| word.matches('_').count() > 2 && !word.contains(' ')).collect();
+    for name in &named {
+        let is_test = tests.contains(&format!("\nfn {name}()"));
+        assert!(is_test, "docs/adding-a-constraint.md names the test `{name}`, which does not exist");
+    }
+    assert!(named.len() >= 5, "the search for tests found only {named:?}");
+}
+
 /// Where a crate's tests are one binary, a file beside `main.rs` that it does not list would never be compiled.
 #[test]
 fn every_file_of_tests_is_compiled() {

@@ -353,7 +353,7 @@ fn parse(text: &str, d: usize) -> Result<Expression, qhat::ExpressionError> {
 const TREES: u32 = 10_000;
 
 #[test]
-fn ten_thousand_random_expressions_and_their_derivatives() {
+fn long_ten_thousand_random_expressions_and_their_derivatives() {
     let config = ProptestConfig { cases: TREES, failure_persistence: None, ..ProptestConfig::default() };
     // The same trees in every run.
     let mut runner =

@@ -48,7 +48,7 @@ fn a_duration_must_be_positive() {
 
 /// Each follows each, with frames of odd length, a hand that comes and goes, and gravity and drag that change.
 #[test]
-fn integrators_follow_one_another() {
+fn long_integrators_follow_one_another() {
     for seed in [3, 8, 11] {
         let (system, state) = open_chains(seed, 1.0, false);
         let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Auto, FRAME)).unwrap();
@@ -101,7 +101,7 @@ fn auto_goes_over_where_substeps_are_limited() {
 
 /// The first substep tried overflows; a shorter one does not.
 #[test]
-fn springs_without_measure_do_not_end_a_run() {
+fn long_springs_without_measure_do_not_end_a_run() {
     for stiffness in [1e12, 1e16, 1e20, 1e24] {
         for is_general in [false, true] {
             let (system, state) = {

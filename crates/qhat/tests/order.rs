@@ -114,7 +114,7 @@ fn bdf2_is_of_order_two() {
 /// With its own substeps RATTLE's error falls with the ⅔ power of the tolerance: substeps are its cube root, errors
 /// their square. Substeps are chosen from an estimate, so the power is not exact.
 #[test]
-fn rattle_follows_its_tolerance() {
+fn long_rattle_follows_its_tolerance() {
     let error = |tolerance: f64| {
         let (system, state) = system();
         let integrator = Integrator::Rattle;

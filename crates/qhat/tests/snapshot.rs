@@ -29,7 +29,7 @@ fn settings(integrator: Integrator) -> Settings {
 }
 
 #[test]
-fn a_fresh_workspace_changes_no_bit_for_any_integrator() {
+fn long_a_fresh_workspace_changes_no_bit_for_any_integrator() {
     for integrator in Integrator::ALL {
         let settings = settings(integrator);
         for (name, system, start) in cases() {

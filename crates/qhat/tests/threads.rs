@@ -26,7 +26,7 @@ fn run(threads: usize, mut simulations: Vec<Simulation>) -> Vec<(State, StepRepo
 }
 
 #[test]
-fn a_large_system_has_the_same_bits_on_any_number_of_threads() {
+fn long_a_large_system_has_the_same_bits_on_any_number_of_threads() {
     let alone = run(1, large());
     for threads in THREADS {
         assert!(run(threads, large()) == alone, "{threads} threads");

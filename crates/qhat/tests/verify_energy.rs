@@ -29,7 +29,7 @@ fn double_pendulum_keeps_its_energy() {
 /// A chain of 100 links let go from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. One setting,
 /// the default, must do for both.
 #[test]
-fn whipping_chains_keep_length_and_energy_under_dop853() {
+fn long_whipping_chains_keep_length_and_energy_under_dop853() {
     for heavy in [1.0, 1000.0] {
         let (system, state) = systems::chain(100, heavy);
         let settings = systems::settings(Integrator::Dop853, 1.0 / 60.0);
@@ -129,7 +129,7 @@ fn centre_of_mass_falls_freely() {
 
 /// Kinetic + potential + dissipated stays the same: what drag takes is booked.
 #[test]
-fn damped_motion_closes_the_account() {
+fn long_damped_motion_closes_the_account() {
     for (integrator, h, allowed) in [
         // RATTLE and its trapezoidal account are of order 2: 4e-4 at the tolerance of 1e-4, smaller by its ⅔ power.
         // Were only one of them of order 1, 3e-5 would be left.

@@ -80,7 +80,7 @@ fn cloth(n: usize) -> (System, State) {
 
 /// The end of a chain of 100 a thousand to a billion times heavier than its beads, at 60 frames a second.
 #[test]
-fn heavy_ends_stay_on_their_rods() {
+fn long_heavy_ends_stay_on_their_rods() {
     for dimension in [Dimension::Two, Dimension::Three] {
         for ratio in [1.0, 1e3, 1e6, 1e7, 1e9] {
             for integrator in IMPLICIT {
@@ -115,7 +115,7 @@ fn a_tenth_of_a_second_is_not_too_long() {
 }
 
 #[test]
-fn a_cloth_hangs_and_loses_energy() {
+fn long_a_cloth_hangs_and_loses_energy() {
     let mut simulation = start(cloth(8), Integrator::Implicit, FRAME);
     let (total, mean, rise) = run(&mut simulation, 120);
     assert!(total.max_relative_length_error <= 1e-10 && total.rejected == 0, "{total:?}");
@@ -214,7 +214,7 @@ fn a_parallelogram_goes_through_flat() {
 
 /// A rod of compliance α under a weight T is longer by α T, at rest, under every integrator; λ and tension are T.
 #[test]
-fn a_compliant_rod_sags_by_its_compliance() {
+fn long_a_compliant_rod_sags_by_its_compliance() {
     let (mass, compliance) = (3.0, 1e-3);
     let weight = mass * 9.81;
     for integrator in Integrator::ALL {

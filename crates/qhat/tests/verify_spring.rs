@@ -43,7 +43,7 @@ fn compare(damping: f64, settings: Settings, allowed: f64) {
 
 /// ω = √(ks/m) = 5 rad/s over 8 s, six periods.
 #[test]
-fn frequency_and_damping_of_a_mass_on_a_spring() {
+fn long_frequency_and_damping_of_a_mass_on_a_spring() {
     for damping in [0.0, 1.0, 5.0] {
         // RK4: phase error (hω)⁴/120 · ωt = 2e-10 of 0.3 m.
         compare(damping, systems::settings(Integrator::Rk4, 1e-3), 1e-9);

@@ -1,7 +1,7 @@
 //! What a picture shows: a state with its tensions, and how the run that led there ended.
 
 use crate::failure::{Failure, warn};
-use crate::run::frames::Frames;
+use crate::run::frames::{Frames, MOST};
 use crate::run::interrupt::Interrupt;
 use crate::run::progress::Progress;
 use crate::source::Source;
@@ -42,13 +42,13 @@ impl Still {
             // A start that cannot be made to hold is all that there is to draw.
             Err(error) => return Ok(Still::start(scene, &error)),
         };
-        let mut still = Ending { status: Status::Done, message: None };
-        if at > 0.0 {
-            still = advance(&mut simulation, scene, at, quiet)?;
-        }
+        let ending = match at {
+            0.0 => Ending { status: Status::Done, message: None },
+            _ => advance(&mut simulation, scene, at, quiet)?,
+        };
         let reading = Reading::of(&mut simulation);
         let (system, state) = (simulation.system().clone(), simulation.state().clone());
-        Ok(Still { time: state.time(), system, state, reading, status: still.status, message: still.message })
+        Ok(Still { time: state.time(), system, state, reading, status: ending.status, message: ending.message })
     }
 
     fn start(scene: &Scene, error: &StepError) -> Self {
@@ -107,13 +107,15 @@ struct Ending {
 /// Steps to a time \[s\], or as far as the motion goes.
 fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> Result<Ending, Failure> {
     let length = Frames::new(scene.duration, None, &scene.settings)?.length();
-    // As many frames as a run to there would have, counted by the same rule and with the same limit.
-    let most = Frames::new(at.max(length), Some((at / length).ceil() as usize), &scene.settings)?;
+    let count = (at / length).ceil();
+    if count > MOST {
+        return Err(Failure::input(format!("{at} s is {count:e} frames away, more than the {MOST:e} that qhat takes")));
+    }
     let whole = (at / length + SAME).floor();
     let rest = at - whole * length;
     let rest = (rest > SAME * length).then_some(rest);
     let interrupt = Interrupt::watch()?;
-    let progress = Progress::new(most, quiet);
+    let progress = Progress::new(Frames { duration: at, count: count as usize }, quiet);
     let lengths = std::iter::repeat_n(length, whole as usize).chain(rest);
     for (index, frame) in lengths.enumerate() {
         if interrupt.came() {

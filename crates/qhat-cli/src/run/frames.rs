@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use qhat::{Settings, SettingsError};
 
 /// The most frames of a run. A file with more would have at least a gigabyte even for one particle.
-const MOST: f64 = 1e8;
+pub(crate) const MOST: f64 = 1e8;
 
 /// Equal frames over a duration.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
-//! `[[constraints]]` of spheres, circles and wires.
+//! `[[constraints]]` of spheres, circles, ellipses and wires.
 
 use super::Assembly;
-use crate::model::curves::{Circle, Curve, Sphere};
+use crate::model::curves::{Circle, Curve, Ellipse, Sphere};
 use crate::model::{Driven, DrivenVector, Id, Parameters};
 use crate::tree::Node;
 use qhat::{Anchor, GeometryError, ParticleId, Purpose};
@@ -54,26 +54,48 @@ impl Assembly<'_, '_, '_> {
 
     /// The particle, the centre and the radius.
     fn round(&mut self, it: &Round<'_>, place: &Node) -> Option<(ParticleId, Anchor, qhat::Driven)> {
-        let (particle, center) = match (it.around, it.center) {
-            (Some(around), None) => {
-                let ids = [(it.particle, place.key("particle")), (around, place.key("around"))];
-                let [particle, around] = self.different_at(ids)?;
-                (particle, Anchor::Particle(around))
-            }
-            (None, Some(center)) => {
-                let particle = self.particle(it.particle, place.key("particle"))?;
-                (particle, Anchor::Point(self.schedules(center, place.key("center"))?))
-            }
-            (given, _) => {
-                self.needs_one(place, it.kind, ["center", "around"], given.is_some());
-                return None;
-            }
-        };
+        let (particle, center) = self.centred(it.kind, it.particle, (it.around, it.center), place)?;
         let radius = match it.radius {
             Some(radius) => self.schedule(radius, place.key("radius"))?,
             None => qhat::Driven::Constant(self.measured_radius(it.kind, particle, &center, place)?),
         };
         Some((particle, center, radius))
+    }
+
+    /// The particle, and the centre: another particle, or a point.
+    fn centred(
+        &mut self,
+        kind: &str,
+        particle: &Id,
+        centre: (Option<&Id>, Option<&DrivenVector>),
+        place: &Node,
+    ) -> Option<(ParticleId, Anchor)> {
+        match centre {
+            (Some(around), None) => {
+                let ids = [(particle, place.key("particle")), (around, place.key("around"))];
+                let [particle, around] = self.different_at(ids)?;
+                Some((particle, Anchor::Particle(around)))
+            }
+            (None, Some(center)) => {
+                let particle = self.particle(particle, place.key("particle"))?;
+                Some((particle, Anchor::Point(self.schedules(center, place.key("center"))?)))
+            }
+            (given, _) => {
+                self.needs_one(place, kind, ["center", "around"], given.is_some());
+                None
+            }
+        }
+    }
+
+    pub(super) fn add_ellipse(&mut self, it: &Ellipse, place: &Node) -> Option<()> {
+        let centre = (it.around.as_ref(), it.center.as_ref());
+        let (particle, center) = self.centred("ellipse", &it.particle, centre, place)?;
+        self.in_plane(place, "a particle stays on an ellipse")?;
+        let along = it.along.as_ref().map_or([1.0, 0.0, 0.0], |along| along.padded());
+        let half_along = self.schedule(&it.half_along, place.key("half_along"))?;
+        let half_across = self.schedule(&it.half_across, place.key("half_across"))?;
+        self.add_named(it, qhat::OnEllipse { particle, center, along, half: [half_along, half_across] });
+        Some(())
     }
 
     /// The distance of a particle from the centre at the start [m].

@@ -5,7 +5,7 @@
 //! of `build`, and one line in the list below.
 
 use super::contact::{Ball, Box, HalfSpace, Limits, Rope};
-use super::curves::{Circle, Curve, Sphere};
+use super::curves::{Circle, Curve, Ellipse, Sphere};
 use super::enclosed::{Area, Volume};
 use super::expression::Expression;
 use super::incidence::{CenterOfMass, Coincidence, Midpoint, Nail, Relation};
@@ -42,6 +42,7 @@ macro_rules! constraint_kinds {
             Plane => add_plane,
             Sphere => add_sphere,
             Circle => add_circle,
+            Ellipse => add_ellipse,
             Curve => add_curve,
             Rope => add_rope,
             Limits => add_limits,

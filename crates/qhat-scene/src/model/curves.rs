@@ -1,4 +1,4 @@
-//! `[[constraints]]` of spheres, circles and wires.
+//! `[[constraints]]` of spheres, circles, ellipses and wires.
 
 use super::constraint::named;
 use super::{Driven, DrivenVector, Id, Name, Vector};
@@ -54,6 +54,34 @@ pub(crate) struct Circle {
 }
 
 named!(Circle, it => format!("circle({})", it.particle.0));
+
+/// A particle on an ellipse about a point or another particle, in two dimensions.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Ellipse {
+    /// The name of the constraint in reports; `ellipse(particle)` if left out.
+    #[serde(default)]
+    pub(crate) id: Option<Name>,
+    /// The id of the particle.
+    pub(crate) particle: Id,
+    /// The id of the particle at the centre, in place of `center`.
+    #[serde(default)]
+    pub(crate) around: Option<Id>,
+    /// The centre [m], numbers or expressions of t.
+    #[serde(default)]
+    pub(crate) center: Option<DrivenVector>,
+    /// The direction of the first axis, a vector of any length; the x axis if left out.
+    #[serde(default)]
+    pub(crate) along: Option<Vector>,
+    /// Half the size of the ellipse along its first axis [m], a number above 0 or an expression of t.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) half_along: Driven,
+    /// Half the size of the ellipse across its first axis [m], a number above 0 or an expression of t.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) half_across: Driven,
+}
+
+named!(Ellipse, it => format!("ellipse({})", it.particle.0));
 
 /// A bead on a wire: a particle on a smooth curve, given by expressions of s or by points.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]

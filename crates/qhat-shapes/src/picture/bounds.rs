@@ -1,11 +1,12 @@
-//! The points that a still must hold.
+//! The points of a scene that must be inside the picture.
 
 use super::vector::{Vec3, dot, minus, plus, scaled};
 use super::view::sag;
 use super::{Picture, gravity};
 use crate::shape::{Shape, ShapeKind};
 
-/// The corners of everything that ends somewhere; what is endless is seen from anywhere, ground from above.
+/// Particles, and the corners of the boxes around all bounded shapes. Lines and planes without ends add no points,
+/// because they cross the picture anyway. The ground adds the point below the middle of the others.
 pub(super) fn points(picture: &Picture<'_>, places: &[Vec3], shapes: &[Shape]) -> Vec<Vec3> {
     let dimension = picture.system.dimension();
     let mut all = places.to_vec();
@@ -53,7 +54,7 @@ fn middle(points: &[Vec3]) -> Vec3 {
     })
 }
 
-/// The point of ground below a place.
+/// The point of the ground that is nearest to a place.
 fn foot(place: Vec3, ground: &Shape) -> Vec3 {
     let [point, normal] = [ground.points[0], ground.points[1]];
     minus(place, scaled(normal, dot(minus(place, point), normal)))

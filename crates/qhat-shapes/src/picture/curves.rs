@@ -1,4 +1,4 @@
-//! What guides particles: wires, endless lines, rings, angles.
+//! Guides of particles: wires, endless lines, rings, angles.
 
 use super::path::Path;
 use super::surfaces::trace_ring;
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// The radius of the arc of an angle \[px\].
 const ANGLE_RADIUS: f64 = 24.0;
-/// How far the direction from which an angle counts goes beyond the arc \[px\].
+/// Length by which the line for the direction of an angle extends beyond the arc \[px\].
 const REFERENCE: f64 = 10.0;
 
 /// A wire, an endless line or a ring that a bead runs along.
@@ -39,7 +39,7 @@ fn trace_line(view: &View<'_>, shape: &Shape, path: &mut Path) {
     path.segment(at(nearest - camera.reach()), at(nearest + camera.reach()));
 }
 
-/// An arc at the corner from the first arm, or the direction, to the second, the shorter way.
+/// An arc at the corner from the first arm, or from the direction, to the second arm, over at most half a turn.
 pub(super) fn trace_angle(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let [.., c, d] = shape.particles[..] else { return };
     let towards = |[x, y]: [f64; 2]| y.atan2(x);
@@ -55,7 +55,7 @@ pub(super) fn trace_angle(view: &View<'_>, shape: &Shape, path: &mut Path) {
     };
     let turn = arm(c, d) - from;
     let shorter = turn - TAU * (turn / TAU).round();
-    // The direction from which an angle counts is seen where no arm shows it.
+    // The direction from which the angle counts is drawn where no arm shows it.
     if first != Some(c) {
         let far = ANGLE_RADIUS + REFERENCE;
         path.segment([x, y], [x + far * from.cos(), y + far * from.sin()]);

@@ -1,23 +1,23 @@
-//! What stands around a scene: the grid behind it, its name and time, the scale of colours, the scale bar, the axes.
+//! The frame of a still: the grid behind the scene, its name and time, the scale of colours, the scale bar, the axes.
 
 use super::number::{format, nice_ceiling};
 use super::path::{Path, Spot, number};
 use super::pen::{Pen, Stroke};
 use super::view::View;
 
-/// Grid lines come about this far apart \[px\].
+/// Approximate distance of grid lines \[px\].
 const GRID: f64 = 90.0;
-/// From the edge of the picture to text and legend \[px\].
+/// Distance from the edge of the picture to text and legend \[px\].
 const EDGE: f64 = 28.0;
-/// The scale of colours \[px\].
-const RAMP: [f64; 2] = [200.0, 10.0];
+/// Width and height of the scale of colours \[px\]: whole pixels for each of its steps.
+const RAMP: [f64; 2] = [205.0, 10.0];
 /// Sizes of the title, of the time and of the legend's text \[px\].
 const TITLE: f64 = 24.0;
 const TIME: f64 = 15.0;
 const SMALL: f64 = 12.0;
-/// A time is told to so many digits: frames of a millisecond differ within a quarter of an hour.
+/// Digits of the time. With six, frames of a millisecond have different times for a quarter of an hour.
 const TIME_DIGITS: usize = 6;
-/// The mean width of a letter, in sizes of its text.
+/// The mean width of a letter, relative to the size of the text.
 const LETTER: f64 = 0.56;
 
 /// The background and, in the plane, a grid of round lengths.
@@ -30,7 +30,7 @@ pub(super) fn draw_background(view: &View<'_>, pen: &mut Pen) {
     }
     let step = nice_ceiling(GRID / camera.scale) * camera.scale;
     let mut path = Path::default();
-    // The origin of the scene is on a line of each kind.
+    // The origin of the scene lies on one vertical and one horizontal line.
     let origin = camera.spot([0.0; 3]);
     for (k, end) in [(0, camera.size[1]), (1, camera.size[0])] {
         let mut at = origin[k].rem_euclid(step);
@@ -49,13 +49,11 @@ pub(super) fn draw_labels(view: &View<'_>, pen: &mut Pen) {
     let name = view.picture.name;
     let letters = name.chars().count().max(1) as f64;
     let title = TITLE.min((width - 2.0 * EDGE) / (LETTER * letters));
-    plate(view, pen, [EDGE, EDGE + 20.0], [LETTER * title * letters, TITLE]);
     pen.text(name, [EDGE, EDGE + 20.0], title, view.palette.ink, "start");
     let mut time = format!("t = {} s", format(view.picture.time, TIME_DIGITS));
     if !view.picture.note.is_empty() {
         time = format!("{time}, {}", view.picture.note);
     }
-    plate(view, pen, [EDGE, EDGE + 44.0], [LETTER * TIME * time.chars().count() as f64, TIME]);
     pen.text(&time, [EDGE, EDGE + 44.0], TIME, view.palette.muted, "start");
     if !view.picture.tension.is_empty() {
         draw_legend(view, pen, [EDGE, height - EDGE]);
@@ -63,35 +61,16 @@ pub(super) fn draw_labels(view: &View<'_>, pen: &mut Pen) {
     draw_scale(view, pen, [width - EDGE, height - EDGE]);
 }
 
-/// Background behind text: a line behind a word would strike it through.
-fn plate(view: &View<'_>, pen: &mut Pen, [x, baseline]: Spot, [width, size]: [f64; 2]) {
-    let [x, y, width, height] = [x - 6.0, baseline - size, width + 12.0, 1.35 * size].map(number);
-    pen.element(
-        "rect",
-        &[
-            ("x", &x),
-            ("y", &y),
-            ("width", &width),
-            ("height", &height),
-            ("rx", "4"),
-            ("fill", view.palette.background),
-            ("fill-opacity", "0.85"),
-        ],
-    );
-}
-
 /// The scale of colours, its lower left corner at a spot.
 fn draw_legend(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
     let [width, thickness] = RAMP;
     let top = y - SMALL - 8.0 - thickness;
-    plate(view, pen, [x, y], [width, 3.2 * SMALL]);
-    pen.open("g", &[("class", "legend")]);
+    // Without smoothing: with it, readers of SVG leave a seam between neighbours.
+    pen.open("g", &[("class", "legend"), ("shape-rendering", "crispEdges")]);
     let colours: Vec<String> = view.palette.scale().collect();
     let part = width / colours.len() as f64;
     for (i, colour) in colours.iter().enumerate() {
-        // Half a pixel more than its part: readers of SVG leave a seam between neighbours.
-        let wide = if i + 1 < colours.len() { part + 0.5 } else { part };
-        let [x, y, wide, high] = [x + i as f64 * part, top, wide, thickness].map(number);
+        let [x, y, wide, high] = [x + i as f64 * part, top, part, thickness].map(number);
         pen.element("rect", &[("x", &x), ("y", &y), ("width", &wide), ("height", &high), ("fill", colour)]);
     }
     let muted = view.palette.muted;
@@ -111,7 +90,6 @@ fn draw_scale(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
     let metres = nice_ceiling(GRID / view.camera.scale / 1.25);
     let length = metres * view.camera.scale;
     let text = format!("{} m", format(metres, 3));
-    plate(view, pen, [x - length, y], [length, 2.4 * SMALL]);
     let mut path = Path::default();
     path.polygon([[x - length, y - 5.0], [x - length, y], [x, y], [x, y - 5.0]]);
     pen.path("scale", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
@@ -128,7 +106,7 @@ fn draw_axes(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
         let mut path = Path::default();
         path.segment([x, y], [x + dx, y + dy]);
         pen.path("axis", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
-        // The baseline is a third of the text's size below its middle.
+        // The baseline lies a third of the text's size below the middle of the text.
         pen.text(name, [x + 1.4 * dx, y + 1.4 * dy + SMALL / 3.0], SMALL, view.palette.muted, "middle");
     }
 }

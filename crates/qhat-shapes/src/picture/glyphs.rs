@@ -4,11 +4,11 @@ use super::path::Path;
 use super::view::View;
 use crate::shape::{Shape, ShapeKind};
 
-/// Turns of a drawn spring: so many at any length.
+/// Turns of a drawn spring, the same number at any length.
 const TURNS: u32 = 6;
-/// How far a nail reaches beyond its particle, and its cross beyond its ring \[px\].
+/// Width by which the ring of a nail extends beyond its particle, and the cross beyond the ring \[px\].
 const NAIL: f64 = 4.0;
-/// More springs than this are drawn thinner.
+/// Number of springs above which springs are drawn thinner.
 const MANY_SPRINGS: usize = 60;
 
 /// A spring: straight ends, and a zig-zag between.

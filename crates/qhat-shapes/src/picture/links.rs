@@ -1,4 +1,4 @@
-//! Links in the colour of their tension, and everything else that goes from one particle to another.
+//! Links in the colour of their tension, and other shapes that go from one particle to another.
 
 use super::number::format;
 use super::path::{Path, number};
@@ -7,9 +7,10 @@ use super::vector::{minus, scaled};
 use super::view::{View, link_width, sag};
 use crate::shape::{Shape, ShapeKind, Source};
 
-/// Within this part of its length a rope counts as taut: half a pixel of a rope across the picture.
+/// A rope counts as taut if its slack is less than this part of its length: half a pixel for a rope across the picture.
 const TAUT: f64 = 5e-4;
-/// The stubs that a broken link leaves at its ends are this long \[px\], and at most this part of what is between them.
+/// Length of the stubs at the ends of a broken link \[px\], and the largest part of the distance of the ends that a
+/// stub takes.
 const STUB: [f64; 2] = [14.0, 0.3];
 
 /// Draws broken links as stubs, and the others that carry a tension or hold a length in the colour of their tension.
@@ -24,7 +25,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
         view.links().filter(|&(shape, place)| is_straight(view, shape, place)).collect();
     let [far, range] = view.depths();
     let in_space = view.camera.dimension == 3 && range > 0.0;
-    // How near a link is, from 0 to 1.
+    // The nearness of a link to the viewer, from 0 to 1.
     let nearness = |shape: &Shape| {
         let depth = |k: usize| view.screen[shape.particles[k].index()][2];
         if in_space { (0.5 * (depth(0) + depth(1)) - far) / range } else { 1.0 }
@@ -50,7 +51,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     pen.close("g");
 }
 
-/// What a link is, and what it carries.
+/// The title of a link: its kind, its name and its tension.
 fn title(view: &View<'_>, shape: &Shape, tension: f64) -> String {
     let name = match shape.of {
         Source::Constraint(i) => view.picture.system.constraints().get(i).map_or("", |named| named.name.as_str()),
@@ -66,7 +67,8 @@ fn title(view: &View<'_>, shape: &Shape, tension: f64) -> String {
     format!("{} {name}: {} N{how}", shape.kind.name(), format(tension.abs(), 3))
 }
 
-/// A rod until it breaks, a rope or a strut while it carries something: without, its style alone shows it.
+/// Whether a link is drawn as a straight line in the colour of its tension: a rod until it breaks, a rope or strut
+/// while it has a tension. All other links are drawn in their own style only.
 fn is_straight(view: &View<'_>, shape: &Shape, place: usize) -> bool {
     !view.is_broken(shape) && (shape.kind == ShapeKind::Rod || view.tension(place).abs() > 0.0)
 }
@@ -105,14 +107,14 @@ pub(super) fn trace_taut(view: &View<'_>, shape: &Shape, path: &mut Path) {
     }
 }
 
-/// A slack rope hangs in a parabola with about its length.
+/// A slack rope is drawn as a parabola of about its length.
 pub(super) fn trace_slack(view: &View<'_>, shape: &Shape, path: &mut Path) {
     if !is_slack(view, shape) {
         return;
     }
     let [from, to] = view.ends(shape);
     let [a, b] = [0, 1].map(|k: usize| view.places[shape.particles[k].index()]);
-    // The middle of a quadratic curve is halfway to its control point.
+    // The middle of a quadratic curve lies halfway between the chord and the control point.
     let [dx, dy] = view.camera.direction(scaled(view.down, 2.0 * sag(shape.size, minus(a, b))));
     path.go(from);
     path.curve([0.5 * (from[0] + to[0]) + dx, 0.5 * (from[1] + to[1]) + dy], to);

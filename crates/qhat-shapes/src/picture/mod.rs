@@ -25,27 +25,28 @@ use pen::Pen;
 use qhat::{Gravity, Simulation, State, System};
 use view::View;
 
-/// What a still shows.
+/// The content of a still.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     /// The system, whose constraints and forces are drawn.
     pub system: &'a System,
-    /// Where its particles are, and the time in the title.
+    /// The state with the positions of the particles.
     pub state: &'a State,
-    /// The time in the title, and of driven shapes \[s\].
+    /// The time in the title, at which driven shapes are drawn \[s\].
     pub time: f64,
-    /// The tension of every link \[N\], in the order of [`System::links`]; a number that is not finite is not known.
+    /// The tension of every link \[N\], in the order of [`System::links`]; a number that is not finite means that the
+    /// tension is not known.
     pub tension: &'a [f64],
     /// The places of broken links in [`System::links`].
     pub broken: &'a [usize],
     /// The title.
     pub name: &'a str,
-    /// Words beside the time, for what a reader must know of this state; may be empty.
+    /// A note beside the time, for facts that a reader must know about this state; may be empty.
     pub note: &'a str,
 }
 
 impl<'a> Picture<'a> {
-    /// A simulation as it is, with the tensions and broken links that [`Reading::of`] found.
+    /// The present state of a simulation, with the tensions and broken links that [`Reading::of`] found.
     pub fn new(simulation: &'a Simulation, reading: &'a Reading, name: &'a str) -> Self {
         let (system, state) = (simulation.system(), simulation.state());
         Picture {
@@ -60,12 +61,13 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// How a still is drawn.
+/// Options of a still: size and theme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Width and height \[px\]. Text and glyphs grow with the picture, and shrink with it to three quarters at most.
+    /// Width and height \[px\]. Text and glyphs grow and shrink with the picture, but not below three quarters of their
+    /// usual size.
     pub size: [u32; 2],
-    /// Light strokes on a dark background.
+    /// Whether strokes are light on a dark background.
     pub dark: bool,
 }
 
@@ -76,13 +78,13 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The least width and height at which title and legend have room \[px\].
+    /// The least width and height \[px\]; title and legend need this much.
     pub const LEAST: u32 = 240;
     /// The largest width and height \[px\]: a PNG of this size takes 256 MiB while it is drawn.
     pub const MOST: u32 = 8192;
 }
 
-/// The parts of a running simulation that a still shows, with tensions and broken links of their own.
+/// A copy of the tensions and broken links of a running simulation, for a still.
 #[derive(Clone, Debug)]
 pub struct Reading {
     /// The tension of every link \[N\].
@@ -92,7 +94,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Asks a simulation for the tensions and broken links of its state.
+    /// Reads the tensions and broken links of the present state of a simulation.
     pub fn of(simulation: &mut Simulation) -> Self {
         let tension = simulation.tension();
         Reading { tension, broken: simulation.system().broken_links(simulation.state()) }
@@ -102,11 +104,11 @@ impl Reading {
 /// A still as an SVG document of its own, with the same bytes for the same picture and options.
 ///
 /// Every particle and every link carries its name and tension as a title, which a browser shows under the pointer.
-/// Text is in the font Inter where the reader has it, else in the reader's sans-serif font.
+/// Text is in the font Inter if the reader of the SVG has it, else in the sans-serif font of the reader.
 pub fn svg(picture: &Picture<'_>, options: &Options) -> String {
     let shapes = crate::list::shapes_at(picture.system, picture.state, picture.time);
     let view = View::new(picture, options, &shapes);
-    let mut pen = Pen::new();
+    let mut pen = Pen::new(view.palette.background);
     pen.open_document(picture.name, options.size, view.camera.size);
     frame::draw_background(&view, &mut pen);
     styles::draw(&view, &mut pen);
@@ -116,7 +118,7 @@ pub fn svg(picture: &Picture<'_>, options: &Options) -> String {
     pen.finish()
 }
 
-/// The acceleration of gravity \[m/s²\]; zero without.
+/// The acceleration of gravity \[m/s²\]; zero if the system has no gravity.
 fn gravity(system: &System) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for force in system.forces() {

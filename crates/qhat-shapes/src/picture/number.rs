@@ -1,8 +1,8 @@
-//! Numbers for people: few digits, a true minus sign, powers of ten where the plain form would be a row of zeros.
+//! Numbers for people: few digits, a typographic minus sign, and powers of ten in place of long rows of zeros.
 
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// A number in so many digits.
+/// A number with the given number of digits.
 pub(super) fn format(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".into();
@@ -21,17 +21,17 @@ pub(super) fn format(value: f64, digits: usize) -> String {
     format!("{trimmed}·10{power}").replace('-', "−")
 }
 
-/// The next of 1, 2, 5 × 10ⁿ at or above a size: where a scale may end.
+/// The least of the numbers 1, 2, 5 × 10ⁿ that is not below a size: the end of a scale.
 pub(super) fn nice_ceiling(size: f64) -> f64 {
     if !(size > 0.0 && size.is_finite()) {
         return 1.0;
     }
-    // Rust prints and reads the shortest number that is meant: no rounding of powers, on any machine.
+    // Rust prints the shortest decimal form and reads it back exactly. Powers computed with `powi` could be rounded.
     let scientific = format!("{size:e}");
     let exponent: i32 = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
     let steps = [(1, exponent), (2, exponent), (5, exponent), (1, exponent + 1)];
     let candidates = steps.map(|(step, exponent)| format!("{step}e{exponent}").parse().unwrap_or(size));
-    // A size that is one of them but for a rounding ends there.
+    // A size that equals such a number up to rounding gets this number and not the next.
     candidates.into_iter().find(|candidate| *candidate >= size * (1.0 - 1e-12)).unwrap_or(size)
 }
 

@@ -1,7 +1,7 @@
-//! Colours. They are those of the page (playground/src/style/base.css and playground/src/view/palette.ts).
+//! Colours, the same as on the page (playground/src/style/base.css and playground/src/view/palette.ts).
 //!
-//! Tension is blue and compression orange: a pair that every common kind of colour blindness keeps apart, and that also
-//! differs in lightness from the grey of a link without load.
+//! Tension is blue and compression orange. People with any common kind of colour blindness can tell the two apart, and
+//! both differ in lightness from the grey of a link without load.
 
 /// The colours of one theme.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(super) struct Palette {
     pub(super) grid: &'static str,
     pub(super) ink: &'static str,
     pub(super) muted: &'static str,
-    /// Of wires and rails: nearer to the background than what moves.
+    /// The colour of wires and rails, nearer to the background than the colours of moving parts.
     pub(super) guide: &'static str,
     pub(super) accent: &'static str,
     pub(super) particle: &'static str,

@@ -1,4 +1,4 @@
-//! Particles: balls by their mass, squares where they are fixed.
+//! Particles: a free particle is a ball whose size shows its mass, a fixed particle is a square.
 
 use super::path::number;
 use super::pen::Pen;
@@ -19,7 +19,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
         }
         let [x, y, _] = view.screen[i];
         let name = &system.particle_names()[i];
-        // A rim that would hide a small ball is left out.
+        // The rim of a small ball is thinner, so that it does not hide the ball.
         let rim = number((0.25 * radius).clamp(0.0, 1.5));
         if fixed {
             let half = radius + 1.0;

@@ -1,4 +1,4 @@
-//! The outline of a drawn thing, in the letters of SVG.
+//! A path: lines and curves in the commands of SVG.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -8,10 +8,10 @@ pub(super) type Spot = [f64; 2];
 
 /// A coordinate in hundredths of a pixel, without zeros at its end.
 pub(super) fn number(value: f64) -> String {
-    // Beyond this nothing is seen, and a reader of SVG counts in 32 bits.
+    // Points beyond 1e6 px are far outside the picture, and readers of SVG use numbers of 32 bits.
     let value = if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 };
     let hundredths = (100.0 * value).round() / 100.0;
-    // −0 is 0.
+    // Adding 0 turns −0 into 0.
     (hundredths + 0.0).to_string()
 }
 
@@ -36,7 +36,7 @@ impl Path {
         self.add('L', &to);
     }
 
-    /// A quadratic curve by its control point.
+    /// A quadratic curve to a spot, with a control point.
     pub(super) fn curve(&mut self, control: Spot, to: Spot) {
         self.add('Q', &[control[0], control[1], to[0], to[1]]);
     }
@@ -60,13 +60,14 @@ impl Path {
     pub(super) fn circle(&mut self, [x, y]: Spot, radius: f64) {
         self.go([x + radius, y]);
         for side in [-1.0, 1.0] {
-            // Half a circle at a time: the ends of a whole one do not tell its middle.
+            // Two half circles, because the ends of a full circle do not determine its centre.
             self.add('A', &[radius, radius, 0.0, 1.0, 1.0, x + side * radius, y]);
         }
         self.close();
     }
 
-    /// Along a circle, from an angle over at most half a turn \[rad\]; angles go from x to y, clockwise to the eye.
+    /// Along a circle, from an angle over at most half a turn \[rad\]; angles count from x to y, which is clockwise in
+    /// the picture.
     pub(super) fn arc(&mut self, [x, y]: Spot, radius: f64, from: f64, turn: f64) {
         let at = |angle: f64| [x + radius * angle.cos(), y + radius * angle.sin()];
         self.go(at(from));

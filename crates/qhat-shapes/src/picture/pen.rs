@@ -1,33 +1,39 @@
-//! What a still is written with: elements of SVG, with every name and text escaped.
+//! The writer of a still: elements of SVG, with every name and text escaped.
 
 use super::path::{Path, number};
 use quick_xml::Writer;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
 
-/// The font of all text; PNGs embed it, readers of SVG may have it.
+/// The fonts of all text, in order of preference. PNGs use an embedded Inter; a reader of SVG may have it or not.
 const FONTS: &str = "Inter, system-ui, sans-serif";
 
-/// How a path is painted; a width of 0 strokes nothing.
+/// The colours and widths with which a path is painted; a width of 0 draws no border.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke<'a> {
     pub(super) colour: &'a str,
-    /// \[px\].
+    /// The width of the border \[px\].
     pub(super) width: f64,
     /// Lengths of dash and gap \[px\].
     pub(super) dash: Option<[f64; 2]>,
-    /// How much of the colour the inside gets.
+    /// The opacity of the inside, from 0 to 1.
     pub(super) fill: f64,
 }
 
 /// An attribute and its value.
 pub(super) type Attribute<'a> = (&'a str, &'a str);
 
+/// How far the background reaches around letters \[px\]: a line behind a word would strike it through.
+const HALO: &str = "6";
+
 /// A document being written.
-pub(super) struct Pen(Writer<Vec<u8>>);
+pub(super) struct Pen {
+    writer: Writer<Vec<u8>>,
+    background: &'static str,
+}
 
 impl Pen {
-    pub(super) fn new() -> Self {
-        Pen(Writer::new(Vec::new()))
+    pub(super) fn new(background: &'static str) -> Self {
+        Pen { writer: Writer::new(Vec::new()), background }
     }
 
     /// Begins a document of a size \[px\] that is laid out in units of its own.
@@ -50,7 +56,7 @@ impl Pen {
     pub(super) fn finish(mut self) -> String {
         self.close("svg");
         // Every byte came from text.
-        String::from_utf8(self.0.into_inner()).unwrap_or_default()
+        String::from_utf8(self.writer.into_inner()).unwrap_or_default()
     }
 
     pub(super) fn open(&mut self, name: &str, attributes: &[Attribute<'_>]) {
@@ -72,7 +78,7 @@ impl Pen {
         self.close(name);
     }
 
-    /// A path of a class, unless there is nothing to draw.
+    /// A path of a class; an empty path is left out.
     pub(super) fn path(&mut self, class: &str, path: &Path, stroke: Stroke<'_>) {
         if path.is_empty() {
             return;
@@ -96,7 +102,11 @@ impl Pen {
     /// Text whose baseline begins, has its middle or ends (`anchor`) at a spot \[px\].
     pub(super) fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, colour: &str, anchor: &str) {
         let [x, y, size] = [x, y, size].map(number);
-        self.open("text", &[("x", &x), ("y", &y), ("font-size", &size), ("fill", colour), ("text-anchor", anchor)]);
+        let place = [("x", x.as_str()), ("y", &y), ("font-size", &size), ("fill", colour), ("text-anchor", anchor)];
+        let halo = [("stroke", self.background), ("stroke-width", HALO), ("stroke-linejoin", "round")];
+        let mut attributes = [&place[..], &halo].concat();
+        attributes.push(("paint-order", "stroke"));
+        self.open("text", &attributes);
         self.write(Event::Text(BytesText::new(&fitted(text))));
         self.close("text");
     }
@@ -109,7 +119,7 @@ impl Pen {
 
     fn write(&mut self, event: Event<'_>) {
         // Writing into memory cannot fail.
-        let _ = self.0.write_event(event);
+        let _ = self.writer.write_event(event);
     }
 }
 
@@ -121,7 +131,8 @@ fn start<'a>(name: &'a str, attributes: &[Attribute<'_>]) -> BytesStart<'a> {
     start
 }
 
-/// Text without the characters that XML forbids and those that turn the direction of writing: names come from scenes.
+/// Text without the characters that XML forbids and without the characters that change the direction of writing: names
+/// come from scenes of users.
 fn fitted(text: &str) -> String {
     let fit = |character: char| match character {
         '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}' => '\u{FFFD}',

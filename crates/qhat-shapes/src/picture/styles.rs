@@ -1,4 +1,5 @@
-//! How each kind of shape looks: one path a style, back to front in the order of the list.
+//! The styles of shapes. All shapes of a style make one path; the paths are drawn from back to front in the order of
+//! the list.
 
 use super::path::Path;
 use super::pen::{Pen, Stroke};
@@ -6,7 +7,7 @@ use super::view::View;
 use super::{curves, glyphs, links, surfaces};
 use crate::shape::{Shape, ShapeKind};
 
-/// Whose colour a style takes.
+/// The colour of a style, by its place in the palette.
 #[derive(Clone, Copy)]
 enum Colour {
     Ink,
@@ -22,10 +23,10 @@ type Trace = fn(&View<'_>, &Shape, &mut Path);
 struct Style {
     kinds: &'static [ShapeKind],
     colour: Colour,
-    /// \[px\]; 0 for shapes without a border.
+    /// The width of the border \[px\]; 0 for shapes without a border.
     width: f64,
     dash: Option<[f64; 2]>,
-    /// How much of the colour the inside gets.
+    /// The opacity of the inside, from 0 to 1.
     fill: f64,
     trace: Trace,
 }
@@ -69,7 +70,7 @@ const STYLES: &[Style] = &[
     style(&[Kind::Nail], Ink, 1.5, glyphs::trace_nail),
 ];
 
-/// Draws everything but links with a tension and particles.
+/// Draws all shapes except links with a tension and particles.
 pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     for style in STYLES {
         let mut path = Path::default();

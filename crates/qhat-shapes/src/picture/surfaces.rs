@@ -7,15 +7,15 @@ use super::view::View;
 use crate::shape::Shape;
 use std::f64::consts::TAU;
 
-/// Strokes of a hatch are this far apart and go this deep \[px\].
+/// Distance and depth of the strokes of a hatch \[px\].
 const HATCH: f64 = 12.0;
-/// The lines of a plane are about this far apart \[px\], and so many each way.
+/// Approximate distance of the lines in a plane \[px\], and their number to each side.
 const PLANE_CELL: f64 = 60.0;
 const PLANE_CELLS: i32 = 8;
-/// A ring in a picture of a thousand pixels is within a pixel of this many straight pieces.
+/// Number of straight pieces of a ring. In a picture of a thousand pixels they are within a pixel of the ring.
 const RING_PIECES: u32 = 96;
 
-/// In the plane ground is a line across the picture, hatched below; in space ground is a plane.
+/// In the plane, the ground is a line across the picture with a hatch below; in space it is a plane.
 pub(super) fn trace_ground(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let camera = &view.camera;
     if camera.dimension == 3 {
@@ -35,14 +35,14 @@ pub(super) fn trace_ground(view: &View<'_>, shape: &Shape, path: &mut Path) {
     for k in first..=last {
         let [px, py] = at(k as f64 * HATCH);
         let end = [px - HATCH * (nx - 0.7 * ux), py - HATCH * (ny - 0.7 * uy)];
-        // Ground goes on outside of the picture, its hatch is left out there.
+        // The line goes on outside the picture; the hatch is left out there.
         if [px, end[0]].iter().any(|x| (0.0..=camera.size[0]).contains(x)) {
             path.segment([px, py], end);
         }
     }
 }
 
-/// Lines of a grid in a plane, around the place that is nearest to the middle of the view.
+/// Lines of a grid in a plane, around the point that is nearest to the middle of the view.
 pub(super) fn trace_plane(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let camera = &view.camera;
     let (point, [n, u, v]) = (shape.points[0], frame(shape.points[1]));
@@ -51,7 +51,7 @@ pub(super) fn trace_plane(view: &View<'_>, shape: &Shape, path: &mut Path) {
     }
     let cell = nice_ceiling(PLANE_CELL / camera.scale);
     let away = minus(camera.centre, point);
-    // Whole cells from the plane's own point, so that the lines stay in the scene.
+    // The grid starts a whole number of cells from the plane's own point, so that its lines are fixed in the scene.
     let [i, j] = [u, v].map(|axis| (dot(away, axis) / cell).round());
     let at = |a: i32, b: i32| {
         let [a, b] = [(i + f64::from(a)) * cell, (j + f64::from(b)) * cell];
@@ -64,13 +64,13 @@ pub(super) fn trace_plane(view: &View<'_>, shape: &Shape, path: &mut Path) {
     }
 }
 
-/// A circle across the axis that is the last point of the shape.
+/// A circle at right angles to the axis, which is the last point of the shape.
 pub(super) fn trace_ring(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let axis = shape.points.last().copied().unwrap_or([0.0, 0.0, 1.0]);
     trace_around(view, shape, axis, path);
 }
 
-/// The circles of a ball in space across the three axes: without them the ball is a disc.
+/// The three great circles of a ball in space at right angles to the axes; without them the ball looks like a disc.
 pub(super) fn trace_great_circles(view: &View<'_>, shape: &Shape, path: &mut Path) {
     if view.camera.dimension == 3 {
         for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
@@ -79,7 +79,7 @@ pub(super) fn trace_great_circles(view: &View<'_>, shape: &Shape, path: &mut Pat
     }
 }
 
-/// A circle about the first end of a shape, across an axis.
+/// A circle about the first end of a shape, at right angles to an axis.
 fn trace_around(view: &View<'_>, shape: &Shape, axis: Vec3, path: &mut Path) {
     let [[x, y], _] = view.ends(shape);
     let [_, u, v] = frame(axis).map(|axis| view.camera.direction(scaled(axis, shape.size)));
@@ -101,7 +101,7 @@ pub(super) fn trace_ball(view: &View<'_>, shape: &Shape, path: &mut Path) {
     path.circle(centre, shape.size * view.camera.scale);
 }
 
-/// The rectangle, or in space the faces that are seen: they lie side by side, so that all is filled alike.
+/// The rectangle of a box, or in space its visible faces. These do not overlap, so the fill is even.
 pub(super) fn trace_box(view: &View<'_>, shape: &Shape, path: &mut Path) {
     let camera = &view.camera;
     let [centre, half] = [shape.points[0], shape.points[1]];
@@ -113,7 +113,7 @@ pub(super) fn trace_box(view: &View<'_>, shape: &Shape, path: &mut Path) {
         }
         let side = towards.signum();
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-        // All the same way round in the picture: faces of two boxes add up and do not cancel.
+        // All faces go the same way round in the picture, so that overlapping faces of two boxes do not cancel.
         let corners = [[-1.0, -1.0], [side, -side], [1.0, 1.0], [-side, side]];
         path.polygon(corners.map(|[a, b]| {
             let mut corner = centre;

@@ -1,4 +1,4 @@
-//! Stills, read back by a parser of XML: what is there, in which colour, and that nothing breaks the document.
+//! Stills, read back by a parser of XML: their elements and colours, and that no text breaks the document.
 
 use super::*;
 use qhat::{Constraint, Dimension, Distance, Limits, Particle, ParticleId};
@@ -50,7 +50,7 @@ fn links_have_the_colour_of_their_tension_and_a_legend_says_which() {
     let text = svg(&picture(&system, &state, &tension, &[]), &Options::default());
     let document = Document::parse(&text).unwrap();
     let drawn: Vec<_> = lines(&document).iter().map(|line| (title(line), line.attribute("stroke").unwrap())).collect();
-    // Half of the scale has √½ of the way from grey to the colour of its end, in 41 steps.
+    // Half of the limit gives √½ of the way from grey to the colour of the limit, in 41 steps.
     let half = super::palette::LIGHT.tension(-10.0, 20.0);
     assert_eq!(
         drawn,
@@ -78,7 +78,7 @@ fn free_particles_are_balls_by_their_mass_and_fixed_ones_squares() {
     assert_eq!(names("circle"), ["low", "high"]);
     let radii: Vec<f64> =
         group.children().filter_map(|node| node.attribute("r")).map(|radius| radius.parse().unwrap()).collect();
-    // Balls of one stuff: ∛2, rounded to hundredths of a pixel.
+    // The ratio of the radii is ∛2 for masses of 2:1, rounded to hundredths of a pixel.
     assert!((radii[0] / radii[1] - 2.0f64.cbrt()).abs() < 0.003, "{radii:?}");
 }
 
@@ -120,7 +120,7 @@ fn names_from_anywhere_stay_text() {
     assert!(!document.descendants().any(|node| class(&node) == "legend"), "no link, no scale of tension");
 }
 
-/// Every scene, in both themes and from the smallest picture on, is a document whose particles are all in sight.
+/// Every scene, in both themes and from the smallest size up, gives a document that shows all particles.
 #[test]
 fn every_shipped_scene_is_drawn_within_its_picture() {
     for shipped in qhat_scene::shipped() {
@@ -138,13 +138,13 @@ fn every_shipped_scene_is_drawn_within_its_picture() {
                 let [x, y] = ["cx", "cy"].map(|name| ball.attribute(name).unwrap().parse::<f64>().unwrap());
                 assert!((0.0..=width).contains(&x) && (0.0..=height).contains(&y), "{}: {x} {y}", shipped.name);
             }
-            // Ropes and struts of tension 1 N are lines, too.
+            // Ropes and struts are lines, too, because each has a tension of 1 N.
             assert_eq!(lines(&document).len(), tension.len(), "{}", shipped.name);
         }
     }
 }
 
-/// Positions that no scene means, but a diverging run may reach.
+/// Positions that a diverging run may reach.
 #[test]
 fn huge_and_coinciding_places_make_no_endless_picture() {
     for far in [0.0, 1e-300, 1e154, 1e300, f64::MAX] {

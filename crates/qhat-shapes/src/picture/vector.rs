@@ -30,7 +30,7 @@ pub(super) fn unit(a: Vec3) -> Vec3 {
     scaled(a, 1.0 / norm(a))
 }
 
-/// The unit vector of a direction and two across it.
+/// The unit vector of a direction, and two unit vectors at right angles to it and to each other.
 pub(super) fn frame(direction: Vec3) -> [Vec3; 3] {
     let n = unit(direction);
     let least = (0..3).min_by(|&i, &k| n[i].abs().total_cmp(&n[k].abs())).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! One still, ready to draw: where everything is in the picture, and how large glyphs are.
+//! The view of one still: the positions of all particles in the picture, and the sizes of glyphs.
 
 use super::camera::{Camera, Inset};
 use super::number::nice_ceiling;
@@ -8,37 +8,37 @@ use super::vector::{Vec3, dot, minus, norm, scaled};
 use super::{Options, Picture, bounds, gravity};
 use crate::shape::Shape;
 
-/// The size at which glyphs and text are as on the page \[px\].
+/// The size of a picture whose glyphs and text have the same size as on the page \[px\].
 const USUAL: [f64; 2] = [1200.0, 800.0];
-/// A small picture gets glyphs and text of at least this many times their size on the page: smaller text is not read.
+/// Least size of glyphs and text in small pictures, relative to their size on the page. Smaller text is not readable.
 const LEAST_ZOOM: f64 = 0.75;
-/// Room around a scene \[px\].
+/// Margins around a scene \[px\].
 const INSET: Inset = Inset { side: 44.0, top: 88.0, bottom: 92.0 };
 
-/// A usual ball's radius is at most this part of a mean rod in the picture.
+/// Largest radius of a ball of median mass, relative to the mean length of a rod in the picture.
 const ROD_SHARE: f64 = 0.22;
 /// The radius of the smallest and of the largest ball \[px\].
 pub(super) const RADII: [f64; 2] = [1.5, 18.0];
-/// Below this largest tension \[N\] all of them are rounding.
+/// If the largest tension is below this \[N\], all tensions count as roundoff.
 const ROUNDING: f64 = 1e-12;
 
-/// What all layers draw from.
+/// The data that all layers draw from.
 pub(super) struct View<'a> {
     pub(super) picture: &'a Picture<'a>,
     pub(super) shapes: &'a [Shape],
     pub(super) palette: &'static Palette,
     pub(super) camera: Camera,
-    /// Where particles are in the scene \[m\]; z = 0 in two dimensions.
+    /// Positions of the particles in the scene \[m\]; z = 0 in two dimensions.
     pub(super) places: Vec<Vec3>,
-    /// x, y \[px\] and depth \[m\] of every particle.
+    /// Positions in the picture: x, y \[px\] and depth \[m\] of every particle.
     pub(super) screen: Vec<[f64; 3]>,
-    /// Of every particle \[px\].
+    /// The radius of every particle \[px\].
     pub(super) radii: Vec<f64>,
-    /// Whether rods are so short that the smallest balls would touch and hide them all.
+    /// Whether rods are so short in the picture that the smallest balls would touch and hide them.
     pub(super) crowded: bool,
-    /// The way things fall, a unit vector; zero where nothing falls.
+    /// The unit vector of gravity; zero without gravity.
     pub(super) down: Vec3,
-    /// N at the ends of the scale of colours.
+    /// The tension at the end of the scale of colours \[N\].
     pub(super) limit: f64,
     broken: Vec<bool>,
 }
@@ -80,7 +80,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Where a particle is in the picture.
+    /// The position of a particle in the picture.
     pub(super) fn spot(&self, particle: qhat::ParticleId) -> Spot {
         let [x, y, _] = self.screen[particle.index()];
         [x, y]
@@ -94,7 +94,7 @@ impl<'a> View<'a> {
         [first, all.next().unwrap_or(first)]
     }
 
-    /// How far apart the two particles of a shape are \[m\].
+    /// The distance of the two particles of a shape \[m\].
     pub(super) fn distance(&self, shape: &Shape) -> f64 {
         let [a, b] = [0, 1].map(|k: usize| self.places[shape.particles[k].index()]);
         norm(minus(a, b))
@@ -113,7 +113,7 @@ impl<'a> View<'a> {
         self.shapes.iter().filter_map(|shape| Some((shape, shape.link?)))
     }
 
-    /// The depth of the farthest particle and how much nearer the nearest is \[m\].
+    /// The depth of the farthest particle, and the difference to the depth of the nearest \[m\].
     pub(super) fn depths(&self) -> [f64; 2] {
         let depths = self.screen.iter().map(|place| place[2]);
         let [far, near] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[far, near], z| [far.min(z), near.max(z)]);
@@ -121,16 +121,17 @@ impl<'a> View<'a> {
     }
 }
 
-/// How far the middle of a slack rope of a length hangs below the middle of its ends \[m\].
+/// The sag of a slack rope \[m\]: the distance of its middle below the middle of its ends.
 ///
-/// A slack rope hangs in a parabola with about its length L: the sag f of a flat one over d is √(3 d (L − d)/8), of a
-/// folded one L/2, and √(3 (L² − d²))/4 is the first and near the second.
+/// A slack rope is drawn as a parabola of about its length L over the distance d of its ends. The sag is √(3 d (L −
+/// d)/8) if L is close to d, and L/2 at d = 0. The formula √(3 (L² − d²))/4 agrees with the first and is near the
+/// second.
 pub(super) fn sag(length: f64, apart: Vec3) -> f64 {
     (3.0 * (length * length - dot(apart, apart)).max(0.0)).sqrt() / 4.0
 }
 
-/// Radii grow with the cube root of the mass, as balls of one stuff do. Crowded scenes get smaller balls, and balls
-/// never hide the rods between them.
+/// The radii of balls, and whether rods are too short to be seen between them. A radius grows with the cube root of the
+/// mass, as for balls of one material. Scenes with many particles or short rods get smaller balls.
 fn radii(picture: &Picture<'_>, camera: &Camera) -> (Vec<f64>, bool) {
     let [least, largest] = RADII;
     let rods = picture.system.links().filter(|link| link.is_rod()).filter_map(|link| link.longest);

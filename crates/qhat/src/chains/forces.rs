@@ -1,5 +1,5 @@
 //! W Q in lanes [m/s²]. Forces are evaluated in the user's order. Forces that are constant over a frame are evaluated
-//! once in it, and drag on every particle is one product in lanes.
+//! once for each frame, and the drag on all particles is one product in lanes.
 
 use crate::force::{Acts, Dependence};
 use crate::linalg::eight::{F8, LANES, Wide, vector_unit};
@@ -17,10 +17,10 @@ pub(super) struct Forces {
     WQ: Vec<F8>,
     /// Viscous drag on every particle [N·s/m].
     drag: f64,
-    /// The forces that depend on the motion: their numbers in the system, and the particles they name.
+    /// The forces that depend on the motion: their indices in the system and the particles that they name.
     varying: Vec<usize>,
     named: Vec<(usize, Option<ChainSlot>)>,
-    /// q, q̇ and Q in the user's order; within a frame only the named particles are kept up to date.
+    /// q, q̇ and Q in the user's order; within a frame only the entries of the named particles are kept up to date.
     pub(super) q: Vec<f64>,
     pub(super) qd: Vec<f64>,
     Q: Vec<f64>,
@@ -43,7 +43,7 @@ impl Forces {
     }
 
     /// Evaluates the forces that are constant over the frame once, and lists the particles that the other forces depend
-    /// on. `q` and `qd` are those of the state.
+    /// on. The fields `q` and `qd` must hold the motion of the state.
     pub(super) fn begin<const D: usize>(&mut self, system: &System, plan: &ChainPlan, t: f64) {
         self.drag = 0.0;
         self.varying.clear();
@@ -110,7 +110,7 @@ impl Forces {
         for &(particle, home) in &self.named {
             let Some(place) = home else { continue };
             for c in 0..D {
-                // The entry is taken out, because several forces may name the same particle.
+                // The entry is set to zero after it is read, because several forces may name the same particle.
                 let force = std::mem::take(&mut self.Q[particle * D + c]);
                 self.WQ[place.block * D + c].0[place.lane] += plan.w[place.block].0[place.lane] * force;
             }
@@ -129,7 +129,7 @@ impl Forces {
     }
 }
 
-/// W Q of the constant forces and of drag; returns the power of the drag.
+/// Writes W Q of the constant forces and of drag; returns the power of the drag.
 struct Drag<'a, const D: usize> {
     plan: &'a ChainPlan,
     drag: f64,

@@ -1,9 +1,9 @@
 //! Chains: the equation, the projection and the drift of a system that consists of open chains, in eight lanes.
 //!
-//! The mathematics is that of `multiplier`. The order of work differs: rows are taken in the half squared form, and are
-//! assembled, factored and solved in two sweeps along the chains (`path.rs`), with particles stored in blocks of eight
-//! (`structure/chains.rs`). A test compares its accelerations with those of the general path. If a pivot is tiny, the
-//! caller continues on the general path.
+//! The mathematics is the same as in `multiplier`. The order of work differs: rows are taken in the half squared form,
+//! and are assembled, factored and solved in two sweeps along the chains (`path.rs`), with particles stored in blocks
+//! of eight (`structure/chains.rs`). A test compares its accelerations with those of the general path. If a pivot is
+//! tiny, the caller continues on the general path.
 
 mod drift;
 mod forces;
@@ -23,17 +23,18 @@ use path::Eliminated;
 use solve::{Acceleration, Position, Solve, Velocity};
 use std::ops::Range;
 
-/// Most iterations of a projection. Newton's method with a new factor each time needs one or two after a substep.
+/// Most iterations of a projection. Newton's method with a new factor in each iteration needs one or two after a
+/// substep.
 const MAX_ITERATIONS: usize = 8;
 
 /// Outcome of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Projected {
-    /// Converged in so many iterations.
+    /// The projection converged in this number of iterations.
     Met(usize),
-    /// It did not converge.
+    /// The projection did not converge.
     NotMet,
-    /// A pivot is tiny: rows depend on each other, and the general path must see to it.
+    /// A pivot is tiny: rows depend on each other, and the caller continues on the general path.
     Singular,
 }
 

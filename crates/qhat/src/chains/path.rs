@@ -1,7 +1,7 @@
 //! The multipliers of eight stretches of chain at once: assembly, factorization and solution of A λ = b in two sweeps.
 //!
-//! Row i of a stretch holds particles i − 1 and i at r_i from each other; d_i = x_i − x_{i−1}. In the half squared form
-//! C = ½(d·d − r²) there is neither a root nor a quotient in J and γ, and q̈ is the same on C = Ċ = 0:
+//! Row i of a stretch holds particles i − 1 and i at the distance r_i; d_i = x_i − x_{i−1}. In the half squared form C
+//! = ½(d·d − r²), J and γ contain neither a root nor a quotient, and q̈ on C = Ċ = 0 is the same as in the length form:
 //!
 //! ```text
 //! A_ii = (w_{i−1} + w_i) d_i·d_i,   A_{i,i−1} = e_i = −w_{i−1} d_{i−1}·d_i        [1/kg · m²]
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! A division takes longer than all other operations of a row, and D_i would wait for the division of D_{i−1}. Written
-//! as D_i = p_i/p_{i−1} with p_i = A_ii p_{i−1} − e_i² p_{i−2}, the recurrence multiplies and subtracts only: the p
-//! follow from row to row, and the divisions no longer wait for each other.
+//! as D_i = p_i/p_{i−1} with p_i = A_ii p_{i−1} − e_i² p_{i−2}, the recurrence multiplies and subtracts only. Only p is
+//! passed from row to row, and the divisions no longer wait for each other.
 //!
 //! Eight lanes may hold consecutive stretches of one long chain. Row 1 of a lane is then coupled with the last row of
 //! the lane before, whose multiplier z is not known yet. Its coefficients are carried along as a second right-hand
@@ -50,7 +50,8 @@ pub(super) struct Eliminated {
     f: F8,
 }
 
-/// The right-hand side of A λ = b and the vector to which W Jᵀλ is added. Blocks count from the group's first.
+/// The right-hand side of A λ = b and the vector to which W Jᵀλ is added. Blocks are counted from the group's first
+/// block.
 pub(super) trait RightSide<const D: usize> {
     /// b of row i.
     fn row<S: Simd>(&self, simd: S, i: usize, d: [Wide<S>; D]) -> Wide<S>;
@@ -92,7 +93,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
     out: &mut [F8],
 ) -> bool {
     let last = group.rows;
-    // Slices of known length, so that no index below needs a check of its own.
+    // Slices of known length, so that the compiler drops the bounds checks below.
     let (w, rod, padding, rows) = (&w[..=last], &rod[..=last], &padding[..=last], &mut rows[..=last]);
     let (q, out) = (&q[..(last + 1) * D], &mut out[..(last + 1) * D]);
     let at = |number: &F8| Wide::load(simd, number);
@@ -163,7 +164,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
         z = (follows * at(&separators.shifted_up())).flushed();
     }
 
-    // `pull` is λ d of the row after, `e_after` its e.
+    // `pull` is λ d and `e_after` is e of the row after.
     let mut pull = [zero; D];
     let mut e_after = zero;
     for i in (1..=last).rev() {

@@ -1,7 +1,7 @@
 //! λ of every chain for three right-hand sides: accelerations, velocities and positions.
 //!
-//! Groups are independent, so many groups are distributed over several threads. Each group computes the same numbers on
-//! any number of threads.
+//! Groups are independent of each other, so a large number of groups is distributed over several threads. Each group
+//! computes the same numbers for any number of threads.
 
 use super::path::{Eliminated, RightSide, solve};
 use crate::linalg::eight::{F8, Wide, dot, load, minus, vector_unit};
@@ -13,13 +13,13 @@ use std::ops::Range;
 /// Work for one thread [blocks]: about 20 µs, a hundred times the cost of handing it to a thread.
 const SHARE: usize = 512;
 
-/// `solve` for consecutive groups. `right` makes the right-hand side of a group from its stretch and its ranges.
+/// Runs `solve` for consecutive groups. `right` makes the right-hand side of a group from its stretch and its ranges.
 pub(super) struct Solve<'a, B, const D: usize> {
     pub(super) plan: &'a ChainPlan,
     pub(super) groups: &'a [Group],
     pub(super) q: &'a [F8],
     pub(super) right: &'a B,
-    /// Room for the rows of the largest group.
+    /// Scratch with space for the rows of the largest group.
     pub(super) rows: &'a mut [Eliminated],
     /// Solves these groups one after the other.
     pub(super) out: &'a mut [F8],
@@ -62,7 +62,7 @@ impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R, const D: usize>
     }
 }
 
-/// q̈: b = −γ − J W Q, on top of W Q.
+/// The right-hand side for q̈: b = −γ − J W Q, added to W Q.
 pub(super) struct Acceleration<'a> {
     pub(super) qd: &'a [F8],
     pub(super) WQ: &'a [F8],
@@ -82,7 +82,7 @@ impl<const D: usize> RightSide<D> for Acceleration<'_> {
     }
 }
 
-/// q̇ on Ċ = 0: b = −Ċ, on top of q̇.
+/// The right-hand side for q̇ on Ċ = 0: b = −Ċ, added to q̇.
 pub(super) struct Velocity<'a> {
     pub(super) qd: &'a [F8],
 }
@@ -99,7 +99,7 @@ impl<const D: usize> RightSide<D> for Velocity<'_> {
     }
 }
 
-/// One iteration of q towards C = 0: b = −C, on top of q.
+/// The right-hand side for one iteration of q towards C = 0: b = −C, added to q.
 pub(super) struct Position<'a> {
     pub(super) stretch: Stretch<'a>,
     pub(super) q: &'a [F8],

@@ -1,4 +1,4 @@
-//! The lanes against the general path, and one vector unit against another.
+//! Compares the chains in lanes with the general path, and plain f64 with the vector unit.
 
 use super::*;
 use crate::linalg::eight::Largest;
@@ -18,8 +18,8 @@ impl Numbers {
     }
 }
 
-/// Chains of so many links on random walks, moving; every third held by its first particle, every fourth nailed by its
-/// last. All kinds of forces act.
+/// Moving chains of the given numbers of links along random walks. The first particle of every third chain is fixed,
+/// the last particle of every fourth is nailed. All kinds of forces act.
 fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
     let numbers = &mut Numbers(7);
     let d = dimension.number();
@@ -54,7 +54,7 @@ fn chains(dimension: Dimension, lengths: &[usize]) -> (System, State) {
     builder.force(MouseSpring { particle: last, target: [0.0; 3], stiffness: 5.0, damping: 0.5 });
     builder.force(Spring { a: ParticleId(0), b: last, stiffness: 3.0, damping: 0.1, rest: 0.5 });
     let (system, mut state) = builder.build().unwrap();
-    // A walk of unequal steps, brought onto rods of one metre.
+    // The steps of the walk have different lengths; the projection brings them onto rods of one metre.
     let settings = Settings { constraint_tolerance: 1e-13, ..Settings::default() };
     project(&system, &mut state, &settings, &mut Workspace::new(&system)).unwrap();
     (system, state)
@@ -86,7 +86,7 @@ fn lay<const D: usize>(system: &System, plan: &ChainPlan, state: &State) -> Laid
     laid
 }
 
-/// q̈ by lanes, in the user's order.
+/// q̈ computed in lanes, in the user's order.
 fn accelerations<const D: usize>(system: &System, state: &State) -> Vec<f64> {
     let plan = system.chains.as_ref().expect("nothing but chains");
     let Laid { mut lanes, q, qd } = lay::<D>(system, plan, state);
@@ -106,13 +106,14 @@ fn accelerations_are_those_of_the_general_path() {
         let lanes = if is_planar { accelerations::<2>(&system, &state) } else { accelerations::<3>(&system, &state) };
         let scale = terms.accelerations.iter().fold(1.0_f64, |most, a| most.max(a.abs()));
         for (k, (a, b)) in lanes.iter().zip(&terms.accelerations).enumerate() {
-            // The state is on C = Ċ = 0 to 1e-13; chains multiply roundoff by up to the square of their length.
+            // The state meets C = Ċ = 0 to 1e-13, and a chain multiplies roundoff by up to the square of its length.
             assert!((a - b).abs() <= 1e-9 * scale, "{} rods, coordinate {k}: {a} and {b}", system.row_count());
         }
     }
 }
 
-/// The sweep, which does all that could differ, on plain f64 and on the widest unit of this machine.
+/// Only the sweep could give different numbers on different vector units: it agrees on plain f64 and on the widest unit
+/// of this machine.
 #[test]
 fn every_vector_unit_gives_the_same_bits() {
     for (system, state) in cases().into_iter().filter(|(system, _)| system.dimension() == 3) {
@@ -139,7 +140,7 @@ fn projection_reaches_both_constraints() {
             *v += 0.1 * numbers.next();
         }
         let Laid { mut lanes, mut q, mut qd } = lay::<2>(&system, plan, &state);
-        // From 1e-3, Newton's method squares its way to roundoff: 1e-6, 1e-12.
+        // Newton's method squares the error in each iteration: 1e-3, 1e-6, 1e-12, roundoff.
         let outcome = lanes.project::<2>(plan, &mut q, &mut qd, 1e-13);
         assert!(matches!(outcome, Projected::Met(1..=4)), "{outcome:?}");
         lanes.end::<2>(plan, &q, &qd, &mut state);
@@ -173,7 +174,8 @@ fn only_open_chains_have_a_plan() {
     assert!(!build(&[(0, 1), (1, 2)], 2), "a rod between fixed particles");
 }
 
-/// Two rods in one line between fixed points depend on each other: a matter for the general path, with the same frame.
+/// Two rods in one line between fixed points depend on each other: the general path takes over and gives the same
+/// frame.
 #[test]
 fn a_taut_line_goes_over_to_the_general_path() {
     let mut builder = System::builder(Dimension::Two);

@@ -1,4 +1,4 @@
-//! Anchor: the point that a constraint measures from, fixed, driven or a particle.
+//! Anchor: the point that a constraint measures from: a fixed point, a driven point or a particle.
 
 use super::error::ConstraintError;
 use crate::allowed::ValueError;
@@ -9,7 +9,7 @@ use crate::space::ParticleId;
 /// A point or vector whose components may be driven; the third is ignored in two dimensions.
 pub type DrivenPoint = [Driven; 3];
 
-/// A point, fixed or driven, or a particle.
+/// The point that a constraint measures from: a point, fixed or driven, or a particle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Anchor {
     /// p(t) \[m\].
@@ -35,7 +35,8 @@ impl Anchor {
         if let Anchor::Particle(particle) = self { Some(*particle) } else { None }
     }
 
-    /// p and ṗ. A particle is at `x`, and its velocity is no part of C_t: ṗ is zero.
+    /// p and ṗ. An anchor that is a particle is at `x` and has ṗ = 0, because the velocity of a particle is no part of
+    /// C_t.
     pub(super) fn at<N: Number, const D: usize>(&self, x: impl FnOnce() -> [N; D], t: N) -> ([N; D], [N; D]) {
         match self {
             Anchor::Point(point) => follow(point, t),
@@ -53,7 +54,7 @@ pub(super) fn still(point: [f64; 3]) -> DrivenPoint {
     point.map(Driven::Constant)
 }
 
-/// p and ṗ.
+/// p and ṗ of a driven point.
 pub(super) fn follow<N: Number, const D: usize>(point: &DrivenPoint, t: N) -> ([N; D], [N; D]) {
     let components: [(N, N); D] = std::array::from_fn(|k| point[k].at(t));
     (components.map(|(value, _)| value), components.map(|(_, rate)| rate))

@@ -11,11 +11,11 @@
 //!
 //! The torque turns the second arm by +λ and the first arm by −λ, and the sum of all forces is zero. With a fixed
 //! direction the ground takes the torque −λ. A motor gives the power λ α̇. In the plane α may run over any number of
-//! turns: C counts no turns, so an arm at the right place has C = 0 however often it went round.
+//! turns: C does not count turns, so an arm in the direction α has C = 0 after any number of turns.
 //!
-//! Fails where an arm has no length. In the plane C jumps where the arm is wrong by half a turn. In space φ has no
-//! derivative at 0 and π, where two arms in line are two conditions and not one, so α must stay inside. At a failure
-//! the numbers are undefined, and the step ends in an error.
+//! Fails where an arm has no length. In the plane C jumps where φ differs from α by half a turn. In space φ has no
+//! derivative at 0 and π: two arms in line are two conditions, not one. α must therefore stay between 0 and π. At a
+//! failure the numbers are undefined, and the step ends in an error.
 
 use super::arms::Arms;
 use super::error::ConstraintError;
@@ -29,9 +29,9 @@ use std::f64::consts::TAU;
 /// The angle from one arm to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Angle {
-    /// The first arm, unless it is a direction, and the second.
+    /// The first arm, unless the angle counts from a direction, and the second arm.
     arms: Arms,
-    /// u, if it is a direction.
+    /// The direction u that the angle counts from; zero if it counts from an arm.
     direction: [f64; 3],
     angle: Driven,
 }

@@ -1,4 +1,5 @@
-//! Area: a polygon keeps its area A(t), which may be driven. The content is incompressible. In the plane.
+//! Area: a polygon keeps its area A(t), which may be driven, as if it were filled with an incompressible fluid. In the
+//! plane only.
 //!
 //! ```text
 //! C = ½ Σ (x_i − x_0) × (x_{i+1} − x_0) − A(t)       [m²],  λ: the pressure inside [N/m]
@@ -6,9 +7,9 @@
 //! C_t = −Ȧ
 //! ```
 //!
-//! A is positive where the corners run counterclockwise. Positions count from x_0, so that a polygon far from the
+//! A is positive if the corners run counterclockwise. Positions count from x_0, so that a polygon far from the
 //! origin keeps its digits. Sides may cross; the sum then counts each loop with its sign. Fails where all corners
-//! fall into one place, because the gradient vanishes there.
+//! are at one point, because the gradient vanishes there.
 
 use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};

@@ -1,20 +1,20 @@
-//! Arms: vectors d from one particle to another, of which several kinds are functions. Arms turn ∂C/∂d into the
-//! gradient of C, wherever one particle ends several arms.
+//! Arms: vectors d from one particle to another. Several kinds of constraints are functions of such vectors only.
+//! `Arms` turns ∂C/∂d into the gradient of C, also where several arms end at one particle.
 //!
 //! ```text
-//! d = x_b − x_a,   ∂C/∂x_i = Σ (∂C/∂d of the arms that end at i) − Σ (∂C/∂d of those that begin there)
+//! d = x_b − x_a,   ∂C/∂x_i = Σ (∂C/∂d of the arms that end at i) − Σ (∂C/∂d of the arms that begin at i)
 //! ```
 
 use super::smooth::{At, Gradient};
 use crate::number::{Number, minus, plus};
 use crate::space::ParticleId;
 
-/// The particles between which the arms of a constraint go.
+/// The arms of a constraint and the particles that they connect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arms {
-    /// Each once.
+    /// The particles, each once.
     particles: Vec<ParticleId>,
-    /// Where each arm begins and ends, as places in `particles`.
+    /// The beginning and the end of each arm, as indices into `particles`.
     ends: Vec<[usize; 2]>,
 }
 
@@ -40,12 +40,12 @@ impl Arms {
         self.ends.len()
     }
 
-    /// Where one arm begins and ends.
+    /// The particles at which an arm begins and ends.
     pub(super) fn ends(&self, arm: usize) -> [ParticleId; 2] {
         self.ends[arm].map(|place| self.particles[place])
     }
 
-    /// Whether an arm begins where it ends.
+    /// Whether an arm begins and ends at the same particle.
     pub(super) fn is_without_length(&self, arm: usize) -> bool {
         self.ends[arm][0] == self.ends[arm][1]
     }

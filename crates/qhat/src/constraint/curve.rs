@@ -5,14 +5,15 @@
 //! ∂s*/∂x = c'/(c'·c' − w·c")
 //! ```
 //!
-//! The search for s* begins at the nearest of 512 points of the curve. Newton's method follows, kept between the
-//! neighbours of that point. The result depends on x alone and not on earlier calls, so a run gives the same bits
-//! wherever it starts. Near a place where the curve comes close to itself or crosses itself the nearest branch is
-//! taken. x cannot say on which branch the particle came, so a curve must keep off itself. A polyline has its foot in
-//! closed form (polyline.rs).
+//! The search for s* begins at the nearest of 512 points of the curve. Newton's method follows and stays between the
+//! neighbours of that point. The foot depends on x alone and not on earlier calls, so a run that starts at a later
+//! frame gives the same bits. Where the curve comes close to itself or crosses itself, the nearest branch is taken: x
+//! does not tell on which branch the particle came. A curve must therefore not come close to itself. A polyline has its
+//! foot in closed form (polyline.rs).
 //!
-//! Beyond 9/10 of the radius of curvature on the inner side −g' is held at c'·c'/10: the foot is about to jump there,
-//! and its derivative would be infinite. Where c' = 0, a cusp, the tangent is that of c", and the foot does not move.
+//! On the inner side, beyond 9/10 of the radius of curvature, −g' is kept at c'·c'/10. At the full radius the foot
+//! jumps, and its derivative would be infinite. At a cusp, where c' = 0, c" gives the tangent, and the foot does not
+//! move.
 
 use super::polyline::Polyline;
 use super::spline::Spline;
@@ -22,13 +23,13 @@ use crate::number::Number;
 use crate::point::{Point, dot, minus};
 use std::sync::Arc;
 
-/// Pieces of equal parameter, from whose nearest end the search for a foot begins.
+/// Number of pieces of equal parameter whose ends are compared. The search for a foot begins at the nearest end.
 const SAMPLES: usize = 512;
-/// Bound on the iterations for one foot. Newton's method takes about five, the bisection that it falls back to about
-/// fifty.
+/// Most iterations for one foot. Newton's method takes about five; the bisection that replaces it where it fails takes
+/// about fifty.
 const ITERATIONS: usize = 60;
 
-/// A smooth curve, for beads and wires. Clones share it.
+/// A smooth curve, for beads and wires. Clones share the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     shape: Arc<Shape>,
@@ -49,19 +50,19 @@ enum CurveForm {
     Polyline(Polyline),
 }
 
-/// The foot of a point, and what moves with it.
+/// The foot of a point, with the tangent there and the derivative of s*.
 pub(super) struct Foot<N, const D: usize> {
     /// x − c.
     pub(super) w: [N; D],
-    /// c' (c" in a cusp).
+    /// c', or c" in a cusp.
     pub(super) tangent: [N; D],
     /// ∂s*/∂x.
     pub(super) slope: [N; D],
 }
 
 impl Curve {
-    /// The curve x(s), y(s) and in space z(s) \[m\] for s between two numbers: expressions for
-    /// [`Purpose::Curve`](crate::Purpose::Curve). Beyond its ends the curve follows the same expressions.
+    /// The curve x(s), y(s) and in space z(s) [m] for s between two numbers: expressions for
+    /// [`Purpose::Curve`](crate::Purpose::Curve). Beyond its ends the curve goes on by the same expressions.
     ///
     /// # Errors
     /// A number of components other than two or three; a component that depends on more than s; bounds in the wrong
@@ -79,7 +80,7 @@ impl Curve {
         Curve::new(CurveForm::Expressions(components), from, to)
     }
 
-    /// The cubic spline through points \[m\], closed or open; z = 0 in two dimensions. An open spline goes on straight
+    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. An open spline goes on straight
     /// beyond its ends.
     ///
     /// # Errors
@@ -90,8 +91,8 @@ impl Curve {
         Curve::new(CurveForm::Spline(spline), 0.0, end)
     }
 
-    /// Straight pieces from point to point \[m\], closed or open, with arcs of a radius \[m\] at the corners; z = 0 in
-    /// two dimensions. The parameter is the arc length \[m\]. An open polyline goes on straight beyond its ends.
+    /// Straight pieces from point to point [m], closed or open, with arcs of a radius [m] at the corners; z = 0 in two
+    /// dimensions. The parameter is the arc length [m]. An open polyline goes on straight beyond its ends.
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
@@ -126,13 +127,14 @@ impl Curve {
         [self.shape.from, self.shape.to]
     }
 
-    /// The point at a parameter \[m\]; z = 0 in two dimensions.
+    /// The point at a parameter [m]; z = 0 in two dimensions.
     pub fn point(&self, s: f64) -> [f64; 3] {
         self.shape.at::<3>(s).map(|[c, _, _]| c)
     }
 
-    /// The corners of a polygon that looks like the curve \[m\], from end to end, for drawing: so many pieces of equal
-    /// parameter, or of a polyline its straight pieces and its arcs in pieces of 5°.
+    /// The corners of a polygon that approximates the curve [m], from end to end, for drawing. The polygon has the
+    /// given number of pieces of equal parameter. For a polyline it has the straight pieces, and the arcs in pieces of
+    /// 5°.
     pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {
         let Shape { form, from, to, .. } = &*self.shape;
         match form {
@@ -222,7 +224,8 @@ impl Shape {
             let newton = if steepness > 0.0 { s + g / steepness } else { s + step.copysign(g) };
             let inside = (s.min(bound)..=s.max(bound)).contains(&newton);
             let next = if inside { newton } else { 0.5 * (s + bound) };
-            // Newton's method squares its error: after a step of 1e-8 only roundoff is left. NaN ends the search, too.
+            // Newton's method squares its error, so after a step of 1e-8 only roundoff is left. NaN ends the search,
+            // too.
             let done = next.is_nan() || (next - s).abs() <= 1e-8 * span;
             s = next;
             if done {

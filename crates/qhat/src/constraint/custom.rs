@@ -1,4 +1,5 @@
-//! Custom: C(q, t) = 0 of a user, written in Rust as C alone; one row. [C] is the unit that the user gives it.
+//! Custom: a constraint C(q, t) = 0 of which the user writes C in Rust, without derivatives; one row. The user chooses
+//! the unit [C].
 //!
 //! ```text
 //! C, Ċ, γ          from one call along (q̇, 1)                 (hyper/derivatives.rs)
@@ -6,10 +7,10 @@
 //! −λ ∂²C/∂q²       one call for each pair of coordinates; its sign is not known
 //! ```
 //!
-//! Several residuals are several constraints: each row then names its own particles only and has a scale of its own.
+//! A user with several residuals adds several constraints, so that each row has its own particles and its own scale.
 //!
 //! Fails where C or a derivative is not finite. The whole row becomes NaN where C itself is not finite, because a
-//! derivative may still have a value there. No method then takes the row for zero, and the step ends in `StepError`.
+//! derivative may still have a value there. No method then mistakes the row for zero, and the step ends in `StepError`.
 
 use super::anchor::check_different;
 use super::expression::size;
@@ -22,15 +23,15 @@ use crate::stiffness::Stiffness;
 use std::fmt;
 use std::sync::Arc;
 
-/// A residual C(q, t) of one's own, for [`Custom`] to hold at zero: the formula alone, without any derivative.
+/// A residual C(q, t) written by a user, for [`Custom`] to hold at zero: the formula alone, without any derivative.
 ///
-/// A closure of the same arguments is one, too. [`Custom`] has an example of each.
+/// Closures with the same arguments implement this trait. [`Custom`] has an example of both.
 pub trait CustomConstraint: Send + Sync {
     /// C(q, t) in a unit of the user's choice, in metres if [`Custom`] gets no scale. `x` has the positions \[m\] of
     /// the particles in the order of [`Custom::new`], with z = 0 in two dimensions; `t` is the time \[s\].
     ///
-    /// C must be smooth, and depend on `x` and `t` alone: the same arguments give the same C. A function that
-    /// computes with [`Hyper`] alone gives the same bits on every target. A C that is not finite ends the step in an
+    /// C must be smooth and must depend on `x` and `t` alone: the same arguments give the same C. A function that uses
+    /// only operations of [`Hyper`] gives the same bits on every target. A C that is not finite ends the step in an
     /// error.
     fn residual(&self, x: &[[Hyper; 3]], t: Hyper) -> Hyper;
 }
@@ -41,10 +42,10 @@ impl<F: Fn(&[[Hyper; 3]], Hyper) -> Hyper + Send + Sync> CustomConstraint for F 
     }
 }
 
-/// A constraint of one's own: holds one residual at zero, as exactly as the built-in kinds hold theirs.
+/// A constraint with a residual written by the user. The residual is held at zero as exactly as for the built-in kinds.
 ///
-/// Two custom constraints are equal if they share the residual, as clones do, and have the same particles and scale.
-/// Threads share the residual, too, hence `Send + Sync`.
+/// Two custom constraints are equal if they share the residual (as clones do) and have the same particles and scale.
+/// Threads share the residual, so it must be `Send + Sync`.
 ///
 /// A bead on the spiral r = a θ, on any of its turns:
 ///
@@ -85,13 +86,13 @@ impl<F: Fn(&[[Hyper; 3]], Hyper) -> Hyper + Send + Sync> CustomConstraint for F 
 pub struct Custom {
     particles: Arc<[ParticleId]>,
     residual: Arc<dyn CustomConstraint>,
-    /// [C], where it was given.
+    /// The scale [C], if one was given.
     scale: Option<f64>,
 }
 
 impl Custom {
-    /// Holds a residual of the positions of some particles, each named once, at zero. C is a length \[m\] unless a
-    /// scale is given.
+    /// A constraint that holds a residual of the positions of these particles at zero. Each particle is named once. C
+    /// is a length \[m\] unless a scale is given.
     pub fn new(particles: impl Into<Vec<ParticleId>>, residual: impl CustomConstraint + 'static) -> Self {
         Custom { particles: particles.into().into(), residual: Arc::new(residual), scale: None }
     }
@@ -132,7 +133,7 @@ impl Holds for Custom {
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
         let [C, Cd, gamma] = jet(self.C(), &self.particles, motion);
         let (J, Ct) = gradient(self.C(), &self.particles, motion);
-        // Where C has no value its derivative may still have one: 1/x of ln x at −1.
+        // Where C has no value, its derivative may still have a value: 1/x, the derivative of ln x, at −1.
         let lost = if C.is_finite() { 0.0 } else { f64::NAN };
         let blocks = J.chunks_exact(D).map(|g| -> Point<D> { std::array::from_fn(|k| g[k] + lost) });
         rows.write_driven(C + lost, Cd + lost, gamma + lost, Ct + lost, blocks);
@@ -166,7 +167,7 @@ impl Holds for Custom {
         false
     }
 
-    /// The function of the user has one form only.
+    /// The residual of a user has one form only.
     fn formulated(&self, _: Formulation) -> Self {
         self.clone()
     }

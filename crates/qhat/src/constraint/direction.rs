@@ -5,7 +5,7 @@
 //! J = −∂C/∂w on a, ∂C/∂w on b,   C_t = ∂C/∂u · u̇      (moment.rs)
 //! ```
 //!
-//! λ is a force across the line [N]. a may be on either side of b, and they may meet: nothing fails there. With a
+//! λ is a force across the line [N]. a may be on either side of b, and a and b may meet: nothing fails there. With a
 //! fixed u every row is linear.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};

@@ -14,7 +14,7 @@
 //! ∂²C/∂x² = (I − nnᵀ)/|d| on aa and bb, its negative on ab;  its norm is 1/|d|
 //! ```
 //!
-//! squared form (the source's, with the −r² it forgot), [C] = m², λ in N/m, tension = −2|d|λ:
+//! squared form (as in the source, where the −r² is missing), [C] = m², λ in N/m, tension = −2|d|λ:
 //!
 //! ```text
 //! C  = d·d − r²
@@ -25,9 +25,9 @@
 //! ```
 //!
 //! A rod of compliance α [m/N] and damping c [N·s/m] is soft: C + α λ + α c Ċ = 0 in the length form, so that at rest
-//! it is longer by α T. α = 0 is rigid. Methods that solve at the end of the step solve this row with the others. For
-//! all other methods the soft rod is a spring of stiffness 1/α with a damper c beside it, and A has no active row for
-//! it. λ and tension mean the same in both.
+//! it is longer by α T. α = 0 is rigid. Implicit methods, which solve for the end of the step, solve this row with the
+//! others. For all other methods the soft rod is a spring of stiffness 1/α with a damper c in parallel, and A has no
+//! active row for it. λ and tension mean the same for all methods.
 //!
 //! Fails at |d| = 0. The length form has no direction there and takes the first axis with γ = 0 (any unit vector is a
 //! subgradient of |d| at 0), so that a projection can still pull the ends apart. The J of the squared form vanishes.
@@ -43,13 +43,13 @@ use crate::point::{Motion, dot, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// Which function of the distance is held at zero.
+/// The function of the distance that is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DistanceForm {
-    /// C = |d| − r \[m\].
+    /// C = |d| − r [m].
     #[default]
     Length,
-    /// C = d·d − r² \[m²\], the source's.
+    /// C = d·d − r² [m²], the form of the source.
     Squared,
 }
 
@@ -60,26 +60,26 @@ pub struct Distance {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// r \[m\], positive.
+    /// r [m], positive.
     pub length: f64,
     /// The function that is held at zero.
     pub form: DistanceForm,
     /// α [m/N], not negative; 0 is rigid.
     pub compliance: f64,
-    /// c [N·s/m], not negative: a damper beside the compliance. A rigid rod has no motion to damp.
+    /// c [N·s/m], not negative: a damper parallel to the compliance. It has no effect on a rigid rod.
     pub damping: f64,
-    /// The tension or thrust at which the rod breaks \[N\].
+    /// The tension or thrust at which the rod breaks [N].
     pub breaks_at: Option<f64>,
 }
 
 impl Distance {
-    /// A rod of the given length \[m\] in the length form.
+    /// A rod of the given length [m] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
     }
 
-    /// A rod whose length is driven \[m\], a number or a function of t: an [`OnSphere`] about the particle `b`. It is
-    /// no link; its tension is minus its reaction.
+    /// A rod whose length is driven [m], a number or a function of t: an [`OnSphere`] about the particle `b`. It is no
+    /// link; its tension is minus its reaction.
     ///
     /// ```
     /// use qhat::{Dimension, Distance, Driven, Particle, System};
@@ -92,7 +92,7 @@ impl Distance {
         OnSphere::new(a, b, length)
     }
 
-    /// The same rod, with the tension or thrust at which it breaks \[N\].
+    /// The same rod, with the tension or thrust at which it breaks [N].
     pub fn breaking_at(self, tension: f64) -> Self {
         Distance { breaks_at: Some(tension), ..self }
     }

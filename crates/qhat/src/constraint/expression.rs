@@ -1,23 +1,24 @@
-//! ExpressionConstraint: C(q, t) = 0 as text of a user; one row. [C] is the unit that the text gives it.
+//! ExpressionConstraint: a constraint C(q, t) = 0 that the user writes as text; one row. The text determines the unit
+//! [C].
 //!
 //! ```text
 //! C, Ċ = J q̇ + C_t, γ = (∂(Jq̇)/∂q) q̇ + 2 J_t q̇ + C_tt, J and C_t     in two passes over the expression
-//! ∂²C/∂q²     in one pass for each coordinate; −λ ∂²C/∂q² has no known sign
+//! ∂²C/∂q²     in one pass for each coordinate; the sign of −λ ∂²C/∂q² is not known
 //! ```
 //!
-//! Several residuals are several constraints: each row then names its own particles only and has a scale of its own.
+//! A user with several residuals adds several constraints, so that each row has its own particles and its own scale.
 //!
 //! The scale is the change of C, to second order, when one particle moves by the length L of the system [m]:
 //!
 //! ```text
-//! scale = max_i max(|∂C/∂x_i| L, ½ |∂²C/∂x_i²| L²)     at the start, unless given [C]; of ∂²C/∂x_i² the largest entry
+//! scale = max_i max(|∂C/∂x_i| L, ½ |∂²C/∂x_i²| L²)     at the start, unless given [C]; |∂²C/∂x_i²|: the largest entry
 //! ```
 //!
-//! With this scale a tolerance means the same for `dist(a, b) - r`, its square, a thousandfold of it, and a square
-//! whose gradient vanishes where it holds. The scale is measured once and stays.
+//! With this scale a tolerance means the same for `dist(a, b) - r`, for its square, for a thousand times it, and for a
+//! square whose gradient vanishes where the constraint holds. The scale is measured once, when the constraint is made.
 //!
-//! Fails where C or a derivative is not finite. Building the system refuses that at the start. Later the whole row
-//! becomes NaN, so that no method takes it for zero, and the step ends in `StepError`.
+//! Fails where C or a derivative is not finite. At the start this is an error of the builder. Later the whole row
+//! becomes NaN, so that no method mistakes it for zero, and the step ends in `StepError`.
 
 use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::expression::{Expression, LONGEST_GRADIENT};
@@ -26,13 +27,13 @@ use crate::point::{Motion, Point, norm};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// An expression that stays zero.
+/// An expression that is held at zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionConstraint {
     expression: Expression,
-    /// How C changes around the start.
+    /// The size of the derivatives of C at the start.
     start: Start,
-    /// [C], where it was given.
+    /// The scale [C], if one was given.
     scale: Option<f64>,
 }
 
@@ -45,11 +46,11 @@ struct Start {
 }
 
 impl ExpressionConstraint {
-    /// Holds an expression at zero. `positions` are those of all particles at the start \[m\], d·n numbers. The scale
-    /// of the row is measured there, at t = 0.
+    /// A constraint that holds an expression at zero. `positions` has the positions of all particles at the start [m],
+    /// d·n numbers. The scale of the row is measured at these positions and t = 0.
     pub fn new(expression: Expression, positions: &[f64]) -> Self {
         let d = expression.dimension();
-        // Building the system refuses a particle that does not exist.
+        // The builder rejects a particle that does not exist.
         let is_there = expression.particles().iter().all(|id| d * (id.0 + 1) <= positions.len());
         let start = match d {
             _ if !is_there => Start { slope: 0.0, bend: 0.0, is_finite: true },
@@ -59,7 +60,7 @@ impl ExpressionConstraint {
         ExpressionConstraint { expression, start, scale: None }
     }
 
-    /// The same constraint with a given scale \[C\], above 0: the |C| that counts as a relative error of one.
+    /// The same constraint with a given scale [C], above 0: the |C| that counts as a relative error of one.
     pub fn with_scale(self, scale: f64) -> Self {
         ExpressionConstraint { scale: Some(scale), ..self }
     }
@@ -128,7 +129,7 @@ impl Holds for ExpressionConstraint {
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>) {
         let mut gradient = [0.0; LONGEST_GRADIENT];
         let (C, Ct) = self.expression.jet_and_gradient(motion.q, motion.qd, motion.t, &mut gradient);
-        // Where C has no value its derivative may still have one: 1/x of ln x at −1.
+        // Where C has no value, its derivative may still have a value: 1/x, the derivative of ln x, at −1.
         let lost = if C.value.is_finite() { 0.0 } else { f64::NAN };
         let blocks = gradient[..self.expression.gradient_len()].chunks_exact(D);
         let J = blocks.map(|g| point::<D>(g).map(|component| component + lost));
@@ -171,7 +172,7 @@ fn point<const D: usize>(numbers: &[f64]) -> Point<D> {
     std::array::from_fn(|k| numbers[k])
 }
 
-/// The Frobenius norm, at least the spectral one.
+/// The Frobenius norm, an upper bound of the spectral norm.
 pub(super) fn size<const D: usize>(block: &Block<D>) -> f64 {
     block.iter().flatten().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

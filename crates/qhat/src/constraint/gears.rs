@@ -1,5 +1,5 @@
-//! Gears: whole multiples of the angles of arms, and displacements along directions, with a given sum but for whole
-//! turns. Meshing wheels, planets and all, a belt, a rack and its pinion, the hands of a clock. In the plane.
+//! Gears: a sum of integer multiples of the angles of arms and of displacements along directions is held at a value, up
+//! to whole turns: meshing wheels, planetary gears, a belt, a rack and pinion, the hands of a clock. In the plane only.
 //!
 //! ```text
 //! d of each arm,   arg d = atan2(d_y, d_x)
@@ -7,22 +7,21 @@
 //! ∂C/∂d = z (−d_y, d_x)/|d|² + k,   C_t = −α̇
 //! ```
 //!
-//! An arm that goes round adds z whole turns. z is an integer, so C(q, t) does not depend on the number of turns, and
-//! none is counted. Teeth work in the same way: wheels of z₁ and z₂ teeth fit into each other wherever z₁ φ₁ + z₂ φ₂
-//! is right but for whole turns, one turn a tooth. Angles are counted from the line between the centres, from c₁ to
-//! c₂ at ψ, which may itself turn (a planet):
+//! An arm that goes round once adds z whole turns to the sum. z is an integer, so C(q, t) does not depend on the number
+//! of turns, and turns need not be counted. Teeth work in the same way: wheels of z₁ and z₂ teeth mesh wherever z₁ φ₁ +
+//! z₂ φ₂ has the right value up to whole turns, one turn for each tooth. Angles are counted from the line between the
+//! centres. This line goes from c₁ to c₂ in the direction ψ, which may itself turn (a planetary gear):
 //!
 //! ```text
-//! z₁ (φ₁ − ψ) + z₂ (φ₂ − ψ) = α           outside each other; z₂ < 0: one inside the other, or a belt
+//! z₁ (φ₁ − ψ) + z₂ (φ₂ − ψ) = α           outside each other; z₂ < 0: one wheel inside the other, or a belt
 //! φ − k·d = α, k = e/r, d = x_p − x_c     a rack that moves along e past a pinion of radius r to the left of it
 //! ```
 //!
-//! A common factor of the z is taken out. The remaining numbers say the same and have the fewest places that fit. The
-//! wheels turn by λ z₁ and λ z₂, and the rest of the torque pushes the centres.
+//! The z are divided by their greatest common factor. The wheels then mesh at the fewest positions that the ratio
+//! allows. The torques on the wheels are λ z₁ and λ z₂, and the rest of the torque acts on the centres.
 //!
-//! Fails where an arm has no length. C jumps half a tooth away from where it holds: a step that starts there slips to
-//! the next tooth. A ratio that is no fraction of whole numbers has no such function of the positions, because it
-//! would need a count of turns.
+//! Fails where an arm has no length. C jumps half a tooth away from where C = 0: a step that starts there slips to the
+//! next tooth. A ratio that is not a quotient of integers is not possible, because C would have to count turns.
 
 use super::angle::within_half_a_turn;
 use super::arms::Arms;
@@ -33,11 +32,11 @@ use crate::driven::Driven;
 use crate::number::{Number, dot};
 use crate::space::ParticleId;
 
-/// The largest number of teeth, also of the sum of two wheels. With more, two teeth would be less than a thousandth
-/// of a turn apart.
+/// The largest number of teeth, also for the sum of two wheels. With more teeth, two teeth would be less than a
+/// thousandth of a turn apart.
 const MOST_TEETH: u32 = 1000;
 
-/// The summand of one arm.
+/// The term of one arm in the sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     /// z arg d.
@@ -55,27 +54,26 @@ pub struct Gears {
 }
 
 impl Gears {
-    /// Two wheels that mesh at α \[rad\]. Each wheel is an arm from its centre to one of its points, with its number of
-    /// teeth. One of the numbers is negative where one wheel lies inside the other, or a belt connects them.
+    /// Two wheels that mesh at α [rad]. Each wheel is an arm from its centre to one of its points, with its number of
+    /// teeth. One of the numbers is negative if one wheel lies inside the other or a belt connects the wheels.
     pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Driven>) -> Self {
         let [[c1, _], [c2, _]] = wheels;
         let common = divisor(teeth[0].unsigned_abs(), teeth[1].unsigned_abs()).max(1) as i32;
         let [z1, z2] = teeth.map(|z| z / common);
         let centres = ([c1, c2], z1.saturating_add(z2).saturating_neg());
         let arms = [(wheels[0], z1), (wheels[1], z2), centres];
-        // Equal wheels on a belt: the line between the centres drops out.
+        // For equal wheels on a belt, ψ cancels.
         Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
     }
 
-    /// Σ z φ = α \[rad\] but for whole turns, over arms with φ counted from the x axis: wheels in bearings of the
-    /// ground.
+    /// Σ z φ = α [rad] up to whole turns, over arms whose angles φ count from the x axis: wheels with fixed centres.
     pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Driven>) -> Self {
         let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
-    /// A pinion, an arm from its centre to one of its points, and a point of the rack, which moves along a direction
-    /// of any length. The pinion, of this radius \[m\], is to the left of that direction.
+    /// A pinion and a rack. The pinion is an arm from its centre to one of its points, has the given radius [m], and is
+    /// to the left of the direction of the rack, which may have any length. `rack` is a point of the rack.
     pub fn rack(
         pinion: [ParticleId; 2],
         rack: ParticleId,
@@ -90,7 +88,8 @@ impl Gears {
         Gears { arms: Arms::new([pinion, [pinion[0], rack]]), parts, angle: angle.into() }
     }
 
-    /// The arms whose angles are added, each with its z; of two meshing wheels also the arm from centre to centre.
+    /// The arms whose angles are added, each with its z. For two meshing wheels, the arm from centre to centre is one
+    /// of them.
     pub fn turns(&self) -> impl Iterator<Item = ([ParticleId; 2], i32)> + '_ {
         self.parts.iter().enumerate().filter_map(|(arm, part)| match *part {
             Part::Turn(z) => Some((self.arms.ends(arm), z)),

@@ -68,7 +68,7 @@ impl Jacobian {
         }
     }
 
-    /// One number of J v.
+    /// One component of J v.
     pub(crate) fn multiply_row<const D: usize>(&self, row: usize, v: &[f64]) -> f64 {
         let entries = self.layout.start[row]..self.layout.start[row + 1];
         entries.map(|e| dot(self.entry::<D>(e), block(v, self.layout.particle[e]))).sum()
@@ -118,8 +118,8 @@ impl<const D: usize> RowWriter<'_, D> {
         self.put(C, Cd, gamma, blocks);
     }
 
-    /// Writes one row through `fill`, which gets the particles of the row and the room for their blocks, D numbers
-    /// each. It returns C, Ċ, γ and C_t.
+    /// Writes one row through `fill`. `fill` gets the particles of the row and the slice for their blocks, D numbers
+    /// each, and returns C, Ċ, γ and C_t.
     pub(crate) fn write_blocks(&mut self, fill: impl FnOnce(&[ParticleId], &mut [f64]) -> [f64; 4]) {
         let Jacobian { layout, blocks, .. } = &mut self.rows.J;
         let entries = layout.start[self.row]..layout.start[self.row + 1];

@@ -21,7 +21,7 @@ pub(crate) trait Holds {
     /// The particles that each row depends on, each once, in the order of the blocks that `evaluate` writes.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// Writes C, Ċ, γ, C_t and the blocks of J, one row after the other.
+    /// Writes C, Ċ, γ, C_t and the blocks of J, row after row.
     fn evaluate<const D: usize>(&self, motion: Motion<'_, D>, rows: &mut RowWriter<'_, D>);
 
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
@@ -32,7 +32,7 @@ pub(crate) trait Holds {
         Softness::default()
     }
 
-    /// The force that takes the place of soft rows in methods that do not solve at the end of the step.
+    /// The force that replaces soft rows in methods that are not implicit.
     fn as_force(&self) -> Option<Force> {
         None
     }
@@ -40,8 +40,8 @@ pub(crate) trait Holds {
     /// A bound on the norm of one block of ∂²C/∂q² [C/m²]. Times |λ| it bounds the geometric stiffness.
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
-    /// Calls `visit(i, j, block)` with the geometric stiffness −Σ λ ∂²C/∂q² [N/m] for the multipliers of the rows. i
-    /// ≤ j count the particles of the constraint. Zero blocks may be left out.
+    /// Calls `visit(i, j, block)` with the blocks of the geometric stiffness −Σ λ ∂²C/∂q² [N/m] for the multipliers of
+    /// the rows. i ≤ j are places in `particles`. Zero blocks may be left out.
     fn geometric_stiffness<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -65,7 +65,7 @@ pub(crate) trait Holds {
         None
     }
 
-    /// The same constraint in the form that a formulation asks for.
+    /// The same constraint in the form that belongs to a formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
     /// Why the constraint has no meaning in d dimensions, in words.
@@ -94,7 +94,7 @@ pub(crate) struct ContactRows {
 pub(crate) struct Softness {
     /// α ≥ 0; zero is rigid.
     pub(crate) compliance: f64,
-    /// c ≥ 0 of a damper beside the compliance.
+    /// c ≥ 0 of a damper parallel to the compliance.
     pub(crate) damping: f64,
 }
 
@@ -103,19 +103,18 @@ impl Softness {
         self.compliance == 0.0
     }
 
-    /// 1 + α c/h: the factor by which the damper multiplies C where the rate is C/h.
+    /// 1 + α c/h: the factor by which the damper multiplies C if the rate Ċ is C/h.
     #[inline(always)]
     pub(crate) fn lag(&self, h: f64) -> f64 {
         1.0 + self.compliance * self.damping / h
     }
 }
 
-/// The form of the constraints: well conditioned, or that of the program this engine descends from.
+/// The form of the constraints: well conditioned, or as in the program from which this engine descends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Formulation {
     /// The length form of rods and the vector form of nails: well conditioned wherever the constraint holds.
     Modern,
-    /// The source's own form: squared distances, and scalar nails, whose gradient vanishes exactly where they must
-    /// hold.
+    /// The form of the source: squared distances, and scalar nails, whose gradient vanishes exactly where C = 0.
     Classic,
 }

@@ -1,9 +1,9 @@
-//! Layout: which particles each row depends on.
+//! Layout: the particles that each row depends on.
 
 use super::{Constraint, Holds};
 use crate::space::ParticleId;
 
-/// Which particles each row depends on. Row i owns the blocks `start[i]..start[i + 1]`.
+/// The particles that each row depends on. The blocks of row i are `start[i]..start[i + 1]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Layout {
     pub(crate) start: Vec<usize>,

@@ -1,5 +1,5 @@
-//! Lengths: a weighted sum of distances, Σ w |d| = L(t). A rope over pulleys, a block and tackle, a winch; two
-//! lengths that are equal, or in a ratio.
+//! Lengths: a weighted sum of distances, Σ w |d| = L(t): a rope over pulleys, a block and tackle, a winch, two lengths
+//! that are equal or have a given ratio.
 //!
 //! ```text
 //! d = x_b − x_a of each segment,   n = d/|d|
@@ -10,8 +10,8 @@
 //! −λ is the tension of the rope: a segment of weight w pulls its ends together with −w λ. The constraint is an
 //! equality, so this rope also pushes where λ > 0.
 //!
-//! A segment without length has no direction. Its gradient is taken as zero, the shortest subgradient of |d|. Near
-//! there its curvature 1/|d| grows without bound, so a load must not be pulled into its block.
+//! A segment without length has no direction. Its gradient is taken as zero, the shortest subgradient of |d|. The
+//! curvature 1/|d| grows without bound as |d| goes to zero, so a load must not be pulled all the way up to its pulley.
 
 use super::arms::Arms;
 use super::error::ConstraintError;
@@ -21,7 +21,7 @@ use crate::driven::Driven;
 use crate::number::{Number, norm, scaled};
 use crate::space::ParticleId;
 
-/// A weighted sum of distances that is held.
+/// A weighted sum of distances that is held at a length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lengths {
     segments: Arms,
@@ -30,19 +30,19 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Σ w |d| = L \[m\] over segments from one particle to another, each with its weight.
+    /// Σ w |d| = L [m] over segments from one particle to another, each with its weight.
     pub fn new(segments: &[([ParticleId; 2], f64)], total: impl Into<Driven>) -> Self {
         let (ends, weights): (Vec<_>, Vec<_>) = segments.iter().copied().unzip();
         Lengths { segments: Arms::new(ends), weights, total: total.into() }
     }
 
-    /// A rope of length L \[m\] over points, in order. A point that the rope passes several times is named as often.
+    /// A rope of length L [m] over points, in order. A point that the rope passes several times is named each time.
     pub fn pulley(points: &[ParticleId], total: impl Into<Driven>) -> Self {
         let segments: Vec<_> = points.windows(2).map(|pair| ([pair[0], pair[1]], 1.0)).collect();
         Lengths::new(&segments, total)
     }
 
-    /// |x_a − x_b| = k |x_c − x_d|; k = 1 keeps them equal.
+    /// |x_a − x_b| = k |x_c − x_d|; k = 1 keeps the two distances equal.
     pub fn ratio(ab: [ParticleId; 2], cd: [ParticleId; 2], k: f64) -> Self {
         Lengths::new(&[(ab, 1.0), (cd, -k)], 0.0)
     }

@@ -1,5 +1,5 @@
-//! Limits: two particles a and b stay no nearer than L₀ and no farther than L₁. A rope has only L₁, a loose strut
-//! only L₀.
+//! Limits: the distance of two particles a and b is at least L₀ and at most L₁. A rope has only L₁, a loose strut only
+//! L₀.
 //!
 //! ```text
 //! d = x_a − x_b,   n = d/|d|,   u = v_a − v_b
@@ -8,8 +8,8 @@
 //! ∂²C/∂x² = ∓(I − nnᵀ)/|d| on aa and bb, its negative on ab
 //! ```
 //!
-//! Where a limit is reached, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0, which has no direction; the
-//! first axis is taken.
+//! When a limit is reached, the relative velocity jumps: Ċ⁺ = −e Ċ⁻. Fails at |d| = 0, where d has no direction; n is
+//! then the first axis.
 
 use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
 use crate::allowed::{check_restitution, check_strength, not_negative, positive};

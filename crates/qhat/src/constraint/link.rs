@@ -4,7 +4,7 @@
 //! d = x_a − x_b,   n = d/|d|
 //! Q̂ = −T n on a, T n on b        T > 0 pulls the two together, T < 0 pushes them apart, T = 0 while slack or broken
 //! rod               T = −λ, or −2|d|λ in the squared form
-//! rope and strut    T = λ of the longest − λ of the shortest, of which one at most is not 0
+//! rope and strut    T = λ of the longest − λ of the shortest; at most one of the two is not 0
 //! ```
 //!
 //! T [N] is the tension as applied: λ is scaled by s where the row is rigid.
@@ -24,11 +24,11 @@ pub struct Link<'a> {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// The least distance of the ends \[m\]; none for a rope.
+    /// The least distance of the ends [m]; `None` for a rope.
     pub shortest: Option<f64>,
-    /// The largest distance of the ends \[m\]; none for a loose strut. Of a rod both are its length.
+    /// The largest distance of the ends [m]; `None` for a loose strut. For a rod both distances are its length.
     pub longest: Option<f64>,
-    /// The rows of the constraint in C, λ and J. Of two limits the longest comes first.
+    /// The rows of the constraint in C, λ and J. With two limits, the row of the longest comes first.
     pub rows: Range<usize>,
 }
 
@@ -39,7 +39,7 @@ impl Link<'_> {
     }
 }
 
-/// The constraint behind a link.
+/// The constraint that a link stands for.
 pub(crate) enum LinkKind<'a> {
     Rod(&'a Distance),
     Limits(&'a Limits),
@@ -69,7 +69,7 @@ impl<'a> LinkKind<'a> {
     /// T [N] from λ of the rows of the constraint.
     pub(crate) fn tension<const D: usize>(&self, motion: Motion<'_, D>, lambda: &[f64], s: f64) -> f64 {
         match self {
-            // A soft rod is a force, to which s does not apply.
+            // A soft rod is a force, so λ is not scaled by s.
             LinkKind::Rod(rod) if rod.compliance > 0.0 => rod.tension(motion, lambda[0]),
             LinkKind::Rod(rod) => rod.tension(motion, s * lambda[0]),
             LinkKind::Limits(limits) => s * limits.tension(lambda),

@@ -1,4 +1,4 @@
-//! Constraints C(q, t) = 0: one file a kind, and the rows that all constraints make together.
+//! Constraints C(q, t) = 0: one file for each kind, and the rows that all constraints make together.
 //!
 //! `docs/adding-a-constraint.md` adds a kind step by step.
 
@@ -25,6 +25,7 @@ mod named;
 mod obstacle;
 mod on_circle;
 mod on_curve;
+mod on_ellipse;
 mod on_line;
 mod on_plane;
 mod on_sphere;
@@ -60,6 +61,7 @@ pub use named::NamedConstraint;
 pub use obstacle::{Obstacle, Surface};
 pub use on_circle::OnCircle;
 pub use on_curve::OnCurve;
+pub use on_ellipse::OnEllipse;
 pub use on_line::{Line, OnLine};
 pub use on_plane::{OnPlane, Plane};
 pub use on_sphere::OnSphere;
@@ -74,7 +76,7 @@ use crate::stiffness::Stiffness;
 
 macro_rules! constraints {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
-        /// Any constraint; one variant a kind.
+        /// Any constraint; one variant for each kind.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Constraint { $($(#[$doc])* $kind($kind),)* }
@@ -150,14 +152,14 @@ macro_rules! constraints {
 }
 
 impl Constraint {
-    /// The rod, if it is one. Large systems are made of rods, and a caller that needs only them skips the match over
-    /// kinds.
+    /// The rod, if the constraint is a rod. Large systems are made of rods, and a caller that needs only rods saves the
+    /// match over all kinds.
     pub(crate) fn as_rod(&self) -> Option<&Distance> {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
 
-    /// C at t = 0 with the particles at q \[m\], flat, d numbers each. A constraint made for the target 0 tells in this
-    /// way which target (length, angle, area) the given positions satisfy.
+    /// C at t = 0 with the particles at q [m], flat, d numbers each. For a constraint made with the
+    /// target 0, this is the target (length, angle, area) that the given positions satisfy.
     ///
     /// # Panics
     /// If q lacks a particle that the constraint names.
@@ -181,9 +183,9 @@ constraints! {
     Limits,
     /// One particle on one side of a surface.
     Obstacle,
-    /// An expression that stays zero.
+    /// An expression that is held at zero.
     ExpressionConstraint,
-    /// A residual written in Rust that stays zero.
+    /// A residual written in Rust that is held at zero.
     Custom,
     /// A linear relation between the positions of particles.
     Relation,
@@ -207,6 +209,8 @@ constraints! {
     OnSphere,
     /// A particle on a circle in space.
     OnCircle,
+    /// A particle on an ellipse in the plane.
+    OnEllipse,
     /// A particle on a smooth curve: a bead on a wire.
     OnCurve,
 }

@@ -6,9 +6,10 @@
 //! ∂C/∂w = (e_k × d)/|d|,   ∂C/∂d = (w × e_k)/|d| − C d/|d|²
 //! ```
 //!
-//! In space d × w has no component along d, so two of the three components are enough: all but the one along which d
-//! is longest. Their gradients have at least 0.7 of full length and stand at 60° or more. Where d turns so far that
-//! another component is longest, the rows change, but the set of points that they allow does not: no force jumps.
+//! In space d × w has no component along d, so two of its three components are enough. The component along the axis of
+//! the largest |d_k| is left out. The two gradients then have at least 0.7 of full length and an angle of at least 60°
+//! between them. Where d turns so far that another |d_k| is the largest, the rows change. The set of points that they
+//! allow does not change, so no force jumps.
 
 use crate::number::{Number, dot, scaled};
 

@@ -6,14 +6,14 @@
 //! C = x − p,   Ċ = v,   J = I,   γ = 0
 //! ```
 //!
-//! scalar form (the source's), one row, [C] = m², λ in N/m:
+//! scalar form (as in the source), one row, [C] = m², λ in N/m:
 //!
 //! ```text
 //! C = |x − p|²,   Ċ = 2 v·(x − p),   J = 2 (x − p)ᵀ,   γ = 2 v·v,   ∂²C/∂x² = 2 I
 //! ```
 //!
-//! The scalar form fails where it holds: at x = p its J is zero, so A has a zero row and no λ can carry the particle.
-//! The source needed its diagonal drag for this reason.
+//! The scalar form fails exactly where C = 0: at x = p its J is zero, so A has a zero row and no λ can carry the
+//! particle. This is why the source needed a drag on the diagonal.
 
 use super::{ConstraintError, Formulation, Holds, Relation, RowWriter};
 use crate::allowed::all_finite;
@@ -23,13 +23,13 @@ use crate::point::{Motion, Vector, dot, first, minus, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// Which function of x − p is held at zero.
+/// The function of x − p that is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NailForm {
-    /// C = x − p \[m\], d rows.
+    /// C = x − p [m], d rows.
     #[default]
     Vector,
-    /// C = |x − p|² \[m²\], one row, the source's.
+    /// C = |x − p|² [m²], one row, the form of the source.
     Scalar,
 }
 
@@ -38,19 +38,19 @@ pub enum NailForm {
 pub struct Nail {
     /// The particle that is held.
     pub particle: ParticleId,
-    /// p \[m\]; the third component is ignored in two dimensions.
+    /// p [m]; the third component is ignored in two dimensions.
     pub at: [f64; 3],
     /// The function that is held at zero.
     pub form: NailForm,
 }
 
 impl Nail {
-    /// A nail at p \[m\] in the vector form.
+    /// A nail at p [m] in the vector form.
     pub fn new(particle: ParticleId, at: impl Into<Vector>) -> Self {
         Nail { particle, at: at.into().0, form: NailForm::Vector }
     }
 
-    /// A nail that moves: a [`Relation`] of the particle to the point p(t) \[m\], each component a number or a function
+    /// A nail that moves: a [`Relation`] of the particle to the point p(t) [m], each component a number or a function
     /// of t; the third is ignored in two dimensions.
     ///
     /// ```

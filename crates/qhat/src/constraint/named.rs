@@ -5,10 +5,10 @@ use super::Constraint;
 /// A constraint with its name and its place among the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedConstraint {
-    /// Its name, for reports.
+    /// The name, for reports.
     pub name: String,
     /// The constraint.
     pub constraint: Constraint,
-    /// Its first row in C, λ and J.
+    /// The first row of the constraint in C, λ and J.
     pub first_row: usize,
 }

@@ -11,14 +11,14 @@
 //!             H ≠ 0 only off a corner or an edge
 //! ```
 //!
-//! ρ, a thousandth of the smallest half, is the radius of the edges and corners of a box. A sharp edge has no normal:
-//! forces without bound would lead a sliding particle round it, or fling it off. On a round edge a particle takes off
-//! where v² > g ρ, and goes round where it is slower.
+//! The edges and corners of a box are rounded with the radius ρ, a thousandth of the smallest half. A sharp edge has no
+//! normal, and the force that leads a sliding particle round it would have no bound. On a round edge a particle with
+//! v² > g ρ takes off, and a slower particle goes round.
 //!
-//! The tangential rows have no positions to hold, because sticking is a matter of velocities. Their true γ is ṫ·v. It
-//! is zero where v = 0, and they are active only there. Friction is Coulomb's: |λ_t| ≤ μ λ_n.
+//! Sticking is a condition on velocities, so the tangential rows have C = 0. Their exact γ is ṫ·v, which is zero at
+//! v = 0, and they are active only at v = 0. Friction follows Coulomb's law: |λ_t| ≤ μ λ_n.
 //!
-//! Fails in the centre of a ball, which has no direction; the first axis is taken.
+//! Fails in the centre of a ball, where no direction leads to the surface; n is then the first axis.
 
 use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
 use crate::allowed::{all_finite, check_restitution, finite, not_negative, positive};
@@ -95,7 +95,7 @@ pub struct Obstacle {
     pub friction: f64,
 }
 
-/// φ, n and H at one place.
+/// φ, n and H at one point.
 struct Near<const D: usize> {
     phi: f64,
     n: Point<D>,
@@ -103,7 +103,7 @@ struct Near<const D: usize> {
 }
 
 impl Obstacle {
-    /// Without restitution and friction.
+    /// An obstacle without restitution and friction.
     pub fn new(particle: ParticleId, surface: Surface) -> Self {
         Obstacle { particle, surface, restitution: 0.0, friction: 0.0 }
     }
@@ -154,7 +154,7 @@ fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
     let sign: Point<D> = d.map(|d| if d < 0.0 { -1.0 } else { 1.0 });
     let y: Point<D> = std::array::from_fn(|k| d[k].abs() - (half[k] - rho));
     let near = if y.iter().filter(|&&y| y > 0.0).count() > 1 {
-        // Off a corner or an edge the distance is that from a point.
+        // Beyond a corner or an edge, the distance is measured from the nearest point of the box shrunk by ρ.
         from_point(std::array::from_fn(|k| sign[k] * y[k].max(0.0)))
     } else {
         let nearest = (1..D).fold(0, |nearest, k| if y[k] > y[nearest] { k } else { nearest });
@@ -164,9 +164,9 @@ fn near_box<const D: usize>(d: Point<D>, half: Point<D>) -> Near<D> {
     Near { phi: near.phi - rho, ..near }
 }
 
-/// Unit vectors along the surface: in the plane n turned by a quarter turn, in space two orthogonal vectors. They
-/// jump only where n_z passes −0.9. (A jump at n_z = 0 would do for a unit vector, but everything that moves in the
-/// plane z = 0 is there.) Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
+/// Unit vectors along the surface: in the plane n turned by a quarter turn, in space two orthogonal vectors. They jump
+/// only where n_z passes −0.9. A jump at n_z = 0 would be possible, too, but motions in the plane z = 0 have n_z = 0.
+/// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6 (2017).
 fn tangents<const D: usize>(n: Point<D>) -> [Point<D>; 2] {
     if D == 2 {
         let along = std::array::from_fn(|k| if k == 0 { -n[1] } else { n[0] });

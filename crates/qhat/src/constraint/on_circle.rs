@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Two rows [m], whose gradients are at right angles on the circle. λ are the forces along the axis and outwards [N].
-//! Three dimensions only: in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
+//! Three dimensions only; in the plane, OnSphere is a circle. Fails in the centre, as OnSphere does, and on the axis,
 //! where both gradients have the same direction.
 
 use super::anchor::{Anchor, check_different, check_direction, check_point, still};
@@ -26,14 +26,14 @@ pub struct OnCircle {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// What the circle is at right angles to, of any length.
+    /// The axis, at right angles to the circle, of any length.
     pub axis: [f64; 3],
-    /// r \[m\], positive.
+    /// r [m], positive.
     pub radius: Driven,
 }
 
 impl OnCircle {
-    /// On a circle of a radius \[m\] about a centre, across an axis.
+    /// A particle on a circle of a radius [m] about a centre, at right angles to an axis.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }

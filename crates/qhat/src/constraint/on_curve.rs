@@ -5,14 +5,14 @@
 //! ```text
 //! in the plane, 1 row [m], the distance with a sign:   n = (−c'_y, c'_x)/|c'|
 //!   C = n·w,   J = nᵀ                          exact: w is along n, so ṅ and the motion of the foot drop out
-//! in space, 2 rows [m]:   e_k the axes but the one along which c' is longest
-//!   C_k = w_k,   J = e_kᵀ − c'_k (∂s*/∂x)ᵀ     w ⊥ c', so w is zero where two of its components are
+//! in space, 2 rows [m]:   e_k the axes except the axis of the largest |c'_k|
+//!   C_k = w_k,   J = e_kᵀ − c'_k (∂s*/∂x)ᵀ     w ⊥ c', so w is zero if two of its components are zero
 //! ```
 //!
-//! λ is the force of the wire on the particle [N]. γ and the geometric stiffness follow from the change of J with x.
-//! In space they leave out w·c‴, which is zero where the constraint holds. In the plane a spline is exact as well.
-//! The c‴ of a spline jumps at the given points, which costs a method of high order some of its order there. The
-//! corners of a polyline begin and end with a jump of c" itself (polyline.rs says what that costs).
+//! λ is the force of the wire on the particle [N]. γ and the geometric stiffness follow from the change of J with x. In
+//! space they leave out w·c‴, which is zero where the constraint holds. In the plane they are exact, for a spline, too.
+//! The c‴ of a spline jumps at the given points, so a method of high order has a lower order there. At both ends of a
+//! round corner of a polyline c" jumps (polyline.rs has the cost of such a jump).
 
 use super::curve::{Curve, Foot};
 use super::error::ConstraintError;

@@ -7,8 +7,8 @@
 //! C_t = ∂C/∂d · u̇ − ∂C/∂w · ṗ
 //! ```
 //!
-//! λ is the force of the line on the particle [N]. The line goes on beyond a and b. Fails where a and b meet: no line
-//! exists there, and C is NaN.
+//! λ is the force of the line on the particle [N]. The line has no ends: it extends beyond a and b. Fails where a and b
+//! meet, because they do not define a line there; C is then NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::error::ConstraintError;
@@ -20,7 +20,7 @@ use crate::space::ParticleId;
 /// The line that a particle is on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Line {
-    /// Through p(t) \[m\] along u(t), of any length.
+    /// Through p(t) [m] along u(t), of any length.
     Through(DrivenPoint, DrivenPoint),
     /// Through two particles.
     Particles(ParticleId, ParticleId),
@@ -36,12 +36,12 @@ pub struct OnLine {
 }
 
 impl OnLine {
-    /// On a line that stays, through a point \[m\] along a direction.
+    /// A particle on a fixed line, through a point [m] along a direction.
     pub fn fixed(particle: ParticleId, point: [f64; 3], along: [f64; 3]) -> Self {
         OnLine { particle, line: Line::Through(still(point), still(along)) }
     }
 
-    /// On the line through a and b.
+    /// A particle on the line through a and b.
     pub fn through(particle: ParticleId, a: ParticleId, b: ParticleId) -> Self {
         OnLine { particle, line: Line::Particles(a, b) }
     }

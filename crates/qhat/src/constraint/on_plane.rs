@@ -4,12 +4,12 @@
 //! ```text
 //! w = x − p or x − x_a,   C = n̂ · w,   n̂ = n/|n|      1 row [m]
 //! ∂C/∂w = n̂,   ∂C/∂n = (w − C n̂)/|n|                   C_t = ∂C/∂n · ṅ − n̂ · ṗ
-//! of particles:  e = x_b − x_a,   f = x_c − x_a,   n = e × f
+//! three particles:  e = x_b − x_a,   f = x_c − x_a,   n = e × f
 //! g = ∂C/∂n:     ∂C/∂e = f × g,   ∂C/∂f = g × e        −(their sum with n̂) on a
 //! ```
 //!
-//! λ is the force of the plane on the particle [N]. Three dimensions only: in the plane, OnLine does the same. Fails
-//! where a, b and c are in line: no plane exists there, and C is NaN.
+//! λ is the force of the plane on the particle [N]. Three dimensions only; in the plane, use OnLine. Fails where a, b
+//! and c are in line, because they do not define a plane there; C is then NaN.
 
 use super::anchor::{DrivenPoint, check_different, check_direction, check_point, follow, still};
 use super::error::ConstraintError;
@@ -20,7 +20,7 @@ use crate::space::ParticleId;
 /// The plane that a particle is on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Plane {
-    /// Through p(t) \[m\] across n(t), of any length.
+    /// Through p(t) [m] at right angles to n(t), of any length.
     Across(DrivenPoint, DrivenPoint),
     /// Through three particles.
     Particles([ParticleId; 3]),
@@ -36,12 +36,12 @@ pub struct OnPlane {
 }
 
 impl OnPlane {
-    /// On a plane that stays, through a point \[m\] across a normal.
+    /// A particle on a fixed plane, through a point [m] at right angles to a normal.
     pub fn fixed(particle: ParticleId, point: [f64; 3], normal: [f64; 3]) -> Self {
         OnPlane { particle, plane: Plane::Across(still(point), still(normal)) }
     }
 
-    /// On the plane through three particles.
+    /// A particle on the plane through three particles.
     pub fn through(particle: ParticleId, corners: [ParticleId; 3]) -> Self {
         OnPlane { particle, plane: Plane::Particles(corners) }
     }

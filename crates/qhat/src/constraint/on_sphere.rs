@@ -1,16 +1,15 @@
-//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle. A sphere in space, a circle
-//! in the plane, a rod whose length is driven.
+//! OnSphere: a particle at the distance r(t) from a point p(t) or from another particle: on a sphere in space, on a
+//! circle in the plane, or at the end of a rod whose length is driven.
 //!
 //! ```text
 //! d = x − p or x − x_p,   n = d/|d|,   C = |d| − r      1 row [m]
-//! J = nᵀ on the particle, −nᵀ on the other,   C_t = −n·ṗ − ṙ
+//! J = nᵀ on the particle, −nᵀ on the other particle,   C_t = −n·ṗ − ṙ
 //! ```
 //!
-//! λ is the force of the sphere on the particle [N], outwards; the tension of a driven rod is −λ. Distance is the
-//! same constraint with a fixed length, and has the squared form, the compliance and the fast paths that large
-//! systems need.
+//! λ is the force of the sphere on the particle [N], outwards; the tension of a driven rod is −λ. Distance is the same
+//! constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large systems.
 //!
-//! Fails at |d| = 0, where the first axis takes the place of n, so that a projection can still pull the two apart.
+//! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
 
 use super::anchor::{Anchor, check_different};
 use super::error::ConstraintError;
@@ -27,12 +26,12 @@ pub struct OnSphere {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// r \[m\], positive.
+    /// r [m], positive.
     pub radius: Driven,
 }
 
 impl OnSphere {
-    /// At a distance \[m\] from a centre.
+    /// A particle at a distance [m] from a centre.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
         OnSphere { particle, center: center.into(), radius: radius.into() }
     }

@@ -1,31 +1,32 @@
-//! Polyline: a wire of straight pieces with round corners, by its arc length s: |c'| = 1.
+//! Polyline: a wire of straight pieces with round corners. Its parameter is the arc length s, so |c'| = 1.
 //!
 //! ```text
 //! at a corner p the wire comes along e and leaves along f, unit vectors, with the angle θ between them
 //! o = (e − f)/|e − f|,   a = (e + f)/|e + f|,   |e − f| = 2 sin(θ/2),   |e + f| = 2 cos(θ/2)
 //! arc of radius r, ψ from −θ/2 to θ/2:   c = m + r (cos ψ o + sin ψ a),   m = p − r o/cos(θ/2),   ψ = u/r − θ/2
 //!   c' = −sin ψ o + cos ψ a,   which is e at −θ/2 and f at θ/2;   c" = −(cos ψ o + sin ψ a)/r
-//! it takes r tan(θ/2) of the straight piece on either side:   r (tan(θ_i/2) + tan(θ_{i+1}/2)) ≤ |p_{i+1} − p_i|
+//! the arc takes r tan(θ/2) of the straight piece on either side:   r (tan(θ_i/2) + tan(θ_{i+1}/2)) ≤ |p_{i+1} − p_i|
 //! ```
 //!
-//! u is the length since the piece began. An arc lies in the plane of its two pieces, and o, a and c stay in that
-//! plane, so the same formulas hold in space. An open wire goes on straight beyond its ends. The foot of a point is
-//! the nearest of its feet on all pieces, each found in closed form: on a straight piece (x − c)·e, on an arc r
-//! (atan2((x − m)·a, (x − m)·o) + θ/2), held within the piece.
+//! u is the length from the beginning of the piece. An arc lies in the plane of its two pieces, and o, a and c stay in
+//! that plane, so the same formulas hold in space. An open wire goes on straight beyond its ends. The foot of a point
+//! is the nearest of its feet on all pieces. Each foot has a closed form and is limited to its piece: u = (x − c)·e on
+//! a straight piece, u = r (atan2((x − m)·a, (x − m)·o) + θ/2) on an arc.
 //!
-//! c and c' are continuous. c" jumps from 0 to 1/r where an arc begins, and with it γ and the force of the wire, as
-//! on a real wire. An adaptive method must close in on each of these places by rejected and short substeps: `dop853`
-//! takes 28 there at a tolerance of 1e-6, 40 at 1e-9. A method of fixed steps is of first order there.
+//! c and c' are continuous. c" jumps from 0 to 1/r where an arc begins; γ and the force of the wire jump with it, as on
+//! a real wire. An adaptive method closes in on each of these jumps by rejected and short substeps: `dop853` takes 28
+//! of them at a tolerance of 1e-6 and 40 at 1e-9. A method with fixed steps is of first order there.
 
 use crate::allowed::{GeometryError, positive};
 use crate::point::{Point, dot, minus, norm};
 
-/// A corner that is nearer to folding back than this [rad] counts as folded: its arc would lie a million radii away.
+/// Least angle by which the turn at a corner must stay below 180° [rad]. Nearer to 180° the corner counts as folded
+/// back, because its arc would lie a million radii away from it.
 const FOLD: f64 = 1e-6;
-/// The excess by which two arcs may overlap on a straight piece, relative to its length. Where the two arcs meet, the
-/// piece has no length but for roundoff.
+/// Overlap of two arcs on a straight piece that is allowed as roundoff, relative to the length of the piece. Two arcs
+/// may meet on a piece and leave nothing of it straight.
 const ROUNDING: f64 = 1e-12;
-/// The largest piece of a drawn arc [rad], 5°: the chord is off the arc by 0.1 % of the radius.
+/// The largest piece of a drawn arc [rad], 5°. The distance of its chord from the arc is at most 0.1 % of the radius.
 const DRAWN: f64 = std::f64::consts::PI / 36.0;
 
 /// A wire of straight pieces and arcs.
@@ -38,7 +39,7 @@ pub(super) struct Polyline {
 
 #[derive(Clone, Debug, PartialEq)]
 struct Piece {
-    /// s where it begins.
+    /// s at the beginning of the piece.
     start: f64,
     length: f64,
     form: PolylineForm,
@@ -145,7 +146,7 @@ impl Polyline {
         }
     }
 
-    /// s*, where the wire is nearest to x.
+    /// s*, the parameter of the point of the wire that is nearest to x.
     pub(super) fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
         let (mut nearest, mut foot) = (f64::INFINITY, 0.0);
         for (i, piece) in self.pieces.iter().enumerate() {
@@ -159,7 +160,7 @@ impl Polyline {
         foot
     }
 
-    /// The parameters of the corners of a polygon that looks like the wire.
+    /// The parameters of the corners of a polygon that approximates the wire.
     pub(super) fn drawn(&self) -> Vec<f64> {
         let mut all = vec![0.0];
         for Piece { start, length, form } in &self.pieces {
@@ -174,7 +175,8 @@ impl Polyline {
 }
 
 impl PolylineForm {
-    /// u of the foot of x, held between two numbers on a straight piece and within an arc, and |x − c|² there.
+    /// u of the foot of x and |x − c|² there. The foot lies between `low` and `high` on a straight piece, and within
+    /// the piece on an arc.
     fn foot<const D: usize>(&self, x: Point<D>, low: f64, high: f64) -> (f64, f64) {
         let first = |v: &[f64; 3]| -> Point<D> { std::array::from_fn(|k| v[k]) };
         match self {
@@ -208,7 +210,7 @@ fn corner(e: [f64; 3], f: [f64; 3], point: usize) -> Result<Option<Corner>, Geom
 /// `Ok` if every straight piece is long enough for the arcs at its ends.
 fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Result<(), GeometryError> {
     let tangent = |i: usize| corners[i % corners.len()].as_ref().map_or(0.0, |corner| corner.tangent);
-    // The largest radius that fits, and the corner that needs the most of that piece.
+    // The largest radius that fits, and the corner that takes the most of the piece that limits it.
     let mut tightest = (f64::INFINITY, 0);
     for (i, (_, length)) in sides.iter().enumerate() {
         let room = length / (tangent(i) + tangent(i + 1));
@@ -224,7 +226,7 @@ fn fit(sides: &[([f64; 3], f64)], corners: &[Option<Corner>], radius: f64) -> Re
     Err(GeometryError::WireRadius { radius, point, largest: short(room) })
 }
 
-/// A radius that still fits, in five digits.
+/// The radius rounded down to five digits, so that it still fits.
 fn short(room: f64) -> f64 {
     let rounded = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
     if rounded(room) <= room * (1.0 + ROUNDING) { rounded(room) } else { rounded(room * (1.0 - 1e-4)) }
@@ -240,8 +242,8 @@ mod tests {
         norm(std::array::from_fn::<f64, 3, _>(|k| a[k][order] - b[k][order]))
     }
 
-    /// Where pieces meet c and c' are the same from both sides, also where a closed wire meets itself; everywhere
-    /// |c'| = 1, c' and c" are what differences say, and c" is 0 or 1/r.
+    /// Where pieces meet, c and c' are the same from both sides, also where a closed wire meets itself. Everywhere |c'|
+    /// = 1, c' and c" agree with differences, and |c"| is 0 or 1/r.
     #[test]
     fn pieces_meet_with_one_derivative() {
         for closed in [false, true] {
@@ -249,7 +251,7 @@ mod tests {
             let ends = wire.pieces.iter().map(|piece| piece.start).filter(|start| closed || *start > 0.0);
             for s in ends {
                 let (left, right) = (wire.at::<3>(s - 1e-9), wire.at::<3>(s + 1e-9));
-                // Over 2e-9 c changes by that, c' by that over the radius.
+                // Over 2e-9 m, c changes by 2e-9 m and c' by 2e-9 m over the radius.
                 assert!(apart(left, right, 0) < 2.1e-9 && apart(left, right, 1) < 1e-8, "{closed} {s}");
             }
             for i in 0..500 {
@@ -260,7 +262,8 @@ mod tests {
                 assert!((speed - 1.0).abs() < 1e-14, "{speed}");
                 assert!(bend == 0.0 || (bend - 1.0 / 0.3).abs() < 1e-13, "{bend}");
                 for k in 0..3 {
-                    // Central differences over 1e-6: roundoff of 1e-16 leaves 1e-10, third derivatives of 1/r² less.
+                    // Central differences over ±1e-6: roundoff of 1e-16 leaves an error of 1e-10, third derivatives of
+                    // 1/r² leave less.
                     let slope = |order: usize| (after[k][order] - before[k][order]) / 2e-6;
                     assert!((slope(0) - at[k][1]).abs() < 1e-8 && (slope(1) - at[k][2]).abs() < 1e-8, "{s}");
                 }
@@ -268,8 +271,8 @@ mod tests {
         }
     }
 
-    /// Beside the wire and off its arcs' planes no point of the wire is nearer than the foot, and the way there
-    /// stands at right angles.
+    /// For points beside the wire and off the planes of its arcs, no point of the wire is nearer than the foot, and the
+    /// line to the foot is at right angles to the wire.
     #[test]
     fn the_foot_is_the_nearest_point() {
         for closed in [false, true] {
@@ -281,7 +284,7 @@ mod tests {
                 let foot = wire.foot(x);
                 let tangent = wire.at::<3>(foot).map(|[_, c1, _]| c1);
                 assert!(dot(away(foot), tangent).abs() < 1e-13, "{closed} {i}");
-                // An open one is straight for 2 m beyond its ends here.
+                // An open wire is tested for 2 m beyond its ends.
                 let (low, high) = if closed { (0.0, wire.end()) } else { (-2.0, wire.end() + 2.0) };
                 for j in 0..=2000 {
                     let s = low + (high - low) * f64::from(j) / 2000.0;
@@ -291,8 +294,8 @@ mod tests {
         }
     }
 
-    /// No place of the wire is farther from its polygon than an arc is from a chord of 5°, and straight pieces are
-    /// drawn in one.
+    /// No point of the wire is farther from its polygon than an arc from its chord of 5°, and each straight piece is
+    /// drawn as one line.
     #[test]
     fn what_is_drawn_is_round_and_cuts_no_corner() {
         let wire = Polyline::new(&BENT, 0.3, false).unwrap();
@@ -327,12 +330,12 @@ mod tests {
         refused(&[square[0], square[1], square[0]], 0.1, true, "points[2] and points[0] are at one place");
         refused(&[square[0], square[1], [0.5, 0.0, 0.0]], 0.1, false, "folds back by 180° at points[1]");
         refused(&square, 0.6, true, "corner at points[1]: the largest that fits is 0.5 m");
-        // tan(π/8) + tan(π/4) of 1 m.
+        // The two corners take (tan(π/8) + tan(π/4)) r of 1 m.
         let narrow = [[0.0; 3], [4.0, 0.0, 0.0], [4.0, 1.0, 0.0], [0.0, 5.0, 0.0]];
         refused(&narrow, 3.0, false, "corner at points[1]: the largest that fits is 0.70");
     }
 
-    /// Arcs that meet leave nothing straight between them: a stadium, and a circle from a square.
+    /// Arcs may meet and leave no straight piece between them: a stadium, and a circle from a square.
     #[test]
     fn arcs_may_use_up_a_side() {
         let points = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];

@@ -1,9 +1,9 @@
-//! Relation: a linear relation between positions, Σ w_i x_i = p. One particle in the middle of two others, the centre
-//! of mass at a point, two particles at one place.
+//! Relation: a linear relation between positions, Σ w_i x_i = p: a particle in the middle of two others, the centre of
+//! mass at a point, two particles at one point.
 //!
 //! ```text
 //! C = Σ w_i x_i − p(t)      d rows [m], λ: force on a particle of weight 1 [N]
-//! J = w_i I on each,   γ = −p̈,   C_t = −ṗ
+//! J = w_i I on each particle,   γ = −p̈,   C_t = −ṗ
 //! ```
 
 use super::error::ConstraintError;
@@ -23,7 +23,7 @@ pub struct Relation {
 }
 
 impl Relation {
-    /// a and b at one place: x_a − x_b = 0.
+    /// a and b at the same point: x_a − x_b = 0.
     pub fn coincidence(a: ParticleId, b: ParticleId) -> Self {
         Relation::homogeneous([(a, 1.0), (b, -1.0)])
     }

@@ -39,7 +39,7 @@ impl Rows {
     ) {
         let mut writer = RowWriter { rows: self, row: 0, entry: 0 };
         for constraint in constraints {
-            // Large systems are made of rods. The match over every kind would cost them a fifth more.
+            // Large systems are made of rods. For them the match over all kinds would take a fifth more time.
             match constraint.as_rod() {
                 Some(rod) => rod.evaluate(motion, &mut writer),
                 None => constraint.evaluate(motion, &mut writer),

@@ -1,5 +1,5 @@
-//! Smooth: constraints from C and its gradient alone. Every other derivative follows by carrying one along through
-//! the same formulas.
+//! Smooth: constraints that are written as C and its gradient alone. All other derivatives follow from the same
+//! formulas, evaluated on numbers that carry a derivative along one direction.
 //!
 //! ```text
 //! along (q + τ q̇, t + τ):   J ↦ J + J̇ ε,   C_t ↦ C_t + Ċ_t ε
@@ -8,8 +8,8 @@
 //! along coordinate k of particle j:   J_i ↦ J_i + (∂²C/∂x_i ∂x_jk) ε, one column of the geometric stiffness
 //! ```
 //!
-//! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`). It
-//! derives nothing else by hand.
+//! A kind writes its residual and its gradient once, over numbers that may carry a derivative (`number.rs`). Nothing
+//! else is derived by hand.
 
 use super::{ConstraintError, Formulation, Holds, RowWriter};
 use crate::linalg::block::{Block, zero};
@@ -20,7 +20,7 @@ use crate::stiffness::Stiffness;
 
 /// A constraint whose rows are smooth functions of positions and time.
 pub(crate) trait Smooth: Clone {
-    /// The only number of dimensions that the kind has a meaning in; `None` where it has one in both.
+    /// The only number of dimensions in which the kind can be used; `None` if it can be used in two and in three.
     const ONLY_IN: Option<usize> = None;
 
     /// Number of scalar rows in d dimensions.
@@ -33,10 +33,11 @@ pub(crate) trait Smooth: Clone {
         false
     }
 
-    /// The i-th of the particles it names, each once; `None` after the last.
+    /// The i-th particle of the constraint; `None` after the last. Each particle comes once.
     fn particle(&self, i: usize) -> Option<ParticleId>;
 
-    /// C and C_t of one row. Its gradient ∂C/∂x goes to `gradient`, particle after particle in the order of `particle`.
+    /// C and C_t of one row. The gradient ∂C/∂x is handed to `gradient`, particle after particle, in the order of
+    /// `particle`.
     fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N>;
 
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
@@ -51,8 +52,8 @@ pub(crate) trait Smooth: Clone {
     fn check(&self) -> Result<(), ConstraintError>;
 }
 
-/// Where a row is evaluated: the positions of the particles of its constraint [m], and t [s]. Both carry their
-/// derivative along one direction.
+/// The arguments of a row: the positions of the particles of its constraint [m] and t [s]. Both carry their derivative
+/// along one direction.
 pub(crate) struct At<'a, N, const D: usize> {
     motion: Motion<'a, D>,
     particles: &'a [ParticleId],
@@ -85,7 +86,7 @@ impl<N: Number, const D: usize> At<'_, N, D> {
     }
 }
 
-/// The receiver of ∂C/∂x [C/m] of one row, one particle after the other.
+/// Receives ∂C/∂x [C/m] of one row, particle after particle.
 pub(crate) struct Gradient<'a, N, const D: usize>(&'a mut dyn FnMut([N; D]));
 
 impl<N, const D: usize> Gradient<'_, N, D> {

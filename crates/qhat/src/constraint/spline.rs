@@ -1,14 +1,14 @@
 //! Spline: the smooth curve through given points, a cubic in each piece, with c, c' and c" continuous.
 //!
 //! ```text
-//! knots s_i: the length of the straight ways up to point i,   h_i = s_{i+1} − s_i,   u = s − s_i
+//! knots s_i: the length of the straight lines from point to point up to point i,   h_i = s_{i+1} − s_i,   u = s − s_i
 //! c = p_i + b_i u + m_i u²/2 + (m_{i+1} − m_i) u³/(6 h_i),   b_i = (p_{i+1} − p_i)/h_i − h_i (2 m_i + m_{i+1})/6
 //! h_{i−1} m_{i−1} + 2 (h_{i−1} + h_i) m_i + h_i m_{i+1} = 6 ((p_{i+1} − p_i)/h_i − (p_i − p_{i−1})/h_{i−1})
 //! ```
 //!
 //! m_i = c"(s_i). An open curve has m = 0 at both ends and goes on straight beyond them; a closed curve returns to
-//! its first point. The closed system has two more corners β; it is solved with their product taken out (Sherman and
-//! Morrison). Source: de Boor, A Practical Guide to Splines, chapter IV.
+//! its first point. The matrix of the closed curve has two further entries β in its corners. They are split off as a
+//! matrix of rank one (Sherman and Morrison). Source: de Boor, A Practical Guide to Splines, chapter IV.
 
 use crate::allowed::GeometryError;
 
@@ -112,7 +112,8 @@ impl Spline {
     }
 }
 
-/// Solves a symmetric tridiagonal system in place; rows j and j + 1 share `beside[j]`. Diagonally dominant: no pivots.
+/// Solves a symmetric tridiagonal system in place; rows j and j + 1 share `beside[j]`. The matrix is diagonally
+/// dominant, so no pivoting is needed.
 fn solve(diagonal: &[f64], beside: &[f64], right: &mut [f64]) {
     let mut pivots = diagonal.to_vec();
     for j in 1..right.len() {
@@ -130,8 +131,8 @@ fn solve(diagonal: &[f64], beside: &[f64], right: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// At every knot: the point itself, and c, c' and c" the same from both sides, also where a closed curve meets
-    /// itself.
+    /// At every knot the curve passes through the point, and c, c' and c" are the same from both sides, also where a
+    /// closed curve meets itself.
     #[test]
     fn pieces_meet_with_two_derivatives() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [1.5, 2.0, -0.3], [0.2, 1.6, 0.1], [-0.8, 0.9, 0.5]];
@@ -142,7 +143,7 @@ mod tests {
                     let (left, right) = (spline.at(k, knot - 1e-9), spline.at(k, knot + 1e-9));
                     assert!((spline.at(k, *knot)[0] - points[i % points.len()][k]).abs() < 1e-14);
                     for order in 0..3 {
-                        // Over 2e-9 the next derivative, of the order of 10, changes 2e-8.
+                        // Over 2e-9 m each changes by 2e-8, because the next derivative is of the order of 10.
                         assert!((left[order] - right[order]).abs() < 1e-7, "{closed} {i} {order}");
                     }
                 }

@@ -1,5 +1,5 @@
-//! Every kind that is made from its residual, with or without its gradient: its rows against differences, and against
-//! the same typed as an expression.
+//! Every kind that is written as a residual, with or without its gradient: compares its rows with differences and with
+//! the same constraint written as expressions.
 
 use super::{
     Anchor, Constraint, Curve, Custom, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere,
@@ -13,7 +13,7 @@ use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
 
 const PARTICLES: usize = 4;
-/// A time that is nothing special.
+/// A time at which no driven value is zero or extreme.
 const T: f64 = 0.37;
 
 fn dimension(d: usize) -> Dimension {
@@ -39,7 +39,7 @@ const B: ParticleId = ParticleId(1);
 const OTHER: ParticleId = ParticleId(2);
 const P: ParticleId = ParticleId(3);
 
-/// A kind, the number of dimensions, and what its rows are as expressions, where one line says it.
+/// A kind, the number of dimensions, the constraint, and its rows as expressions if they are short.
 type Case = (&'static str, usize, Constraint, Vec<&'static str>);
 
 fn cases() -> Vec<Case> {
@@ -124,7 +124,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Numbers in [−1, 1] that look random.
+/// Pseudo-random numbers in [−1, 1].
 fn numbers(count: usize, seed: u64) -> Vec<f64> {
     let mut bits = seed;
     let mut next = || {
@@ -134,7 +134,7 @@ fn numbers(count: usize, seed: u64) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-/// Places that look random, no three of them nearly in line.
+/// Pseudo-random positions, no three of them nearly in line.
 fn places<const D: usize>(seed: u64) -> Vec<f64> {
     let corners = [[0.0, 0.0, 0.0], [2.0, 0.3, 0.5], [0.5, 2.0, 1.0], [-1.0, 1.5, 2.0]];
     let apart = numbers(PARTICLES * D, seed);
@@ -169,7 +169,7 @@ fn close(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 /// Central differences over ±1e-5 are good to h² f‴/6, 2e-11 times a third derivative of some hundreds, and to ε/h =
-/// 1e-11. Expressions hold most of these rows much closer.
+/// 1e-11. The comparison with expressions is much closer.
 const H: f64 = 1e-5;
 const GOOD: f64 = 3e-7;
 
@@ -185,7 +185,7 @@ fn against_differences<const D: usize>(name: &str, constraint: &Constraint, q: &
     let later = |tau: f64| evaluated::<D>(constraint, q, qd, T + tau).C;
     close(&format!("{name}: time"), &at.Ct, &slope(&later(H), &later(-H)), GOOD);
 
-    // −λ ∂²C/∂q² against differences of Jᵀλ, and J against those of C.
+    // −λ ∂²C/∂q² against differences of Jᵀλ, and J against differences of C.
     let n = q.len();
     let lambda = numbers(at.C.len(), 5);
     let mut stiffness = vec![0.0; n * n];
@@ -253,7 +253,7 @@ fn rows_are_what_differences_and_expressions_say() {
     }
 }
 
-/// In space γ and the stiffness of a wire leave out w·c‴: on the wire all is exact. The foot of a spline likewise.
+/// In space γ and the stiffness of a wire leave out w·c‴, so they are exact on the wire; so is the foot of a spline.
 #[test]
 fn rows_of_a_wire_in_space_are_exact_on_it() {
     let texts = ["cos(s)", "sin(s)", "0.2*s"];
@@ -268,7 +268,7 @@ fn rows_of_a_wire_in_space_are_exact_on_it() {
         let (mut q, qd) = (numbers(PARTICLES * 3, 1), numbers(PARTICLES * 3, 2));
         q[P.0 * 3..].copy_from_slice(&curve.point(at));
         against_differences::<3>("wire", &constraint, &q, &qd);
-        // 1e-15: the place itself is rounded.
+        // The position itself is rounded, hence 1e-15.
         close("wire: C", &evaluated::<3>(&constraint, &q, &qd, T).C, &[0.0, 0.0], 1e-15);
     }
 }
@@ -288,7 +288,7 @@ fn rows_of_a_bent_wire_are_exact_beside_it() {
     }
 }
 
-/// Where there is no direction, and where the foot is about to jump, the numbers stay finite.
+/// The numbers stay finite where a direction does not exist and where the foot is about to jump.
 #[test]
 fn singular_places_give_finite_numbers() {
     let finite = |constraint: &Constraint, q: &[f64]| {

@@ -9,8 +9,8 @@
 //!
 //! V is positive where the corners of a face run counterclockwise as seen from outside. The surface must be closed:
 //! each side belongs to two faces that run along it in opposite directions. Then neither C nor its gradient depends
-//! on the point that positions count from. Fails where all corners lie in one line or place, because the gradient
-//! vanishes there.
+//! on the point that positions count from. Fails where all corners lie on one line or at one point, because the
+//! gradient vanishes there.
 
 use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
@@ -24,15 +24,15 @@ use std::collections::HashSet;
 pub struct Volume {
     /// The corners of the surface, each once.
     particles: Vec<ParticleId>,
-    /// The corners of each face, as places in `particles`.
+    /// The corners of each face, as indices into `particles`.
     faces: Vec<[usize; 3]>,
-    /// The other two corners of each face at each particle, in their order.
+    /// For each particle and each face at it: the other two corners of the face, in order.
     around: Vec<Vec<[usize; 2]>>,
     volume: Driven,
 }
 
 impl Volume {
-    /// A closed surface of triangles around V \[m³\].
+    /// A closed surface of triangles that encloses V [m³].
     pub fn new(triangles: &[[ParticleId; 3]], volume: impl Into<Driven>) -> Self {
         let mut particles: Vec<ParticleId> = triangles.iter().flatten().copied().collect();
         particles.sort_unstable();
@@ -48,12 +48,12 @@ impl Volume {
         Volume { particles, faces, around, volume: volume.into() }
     }
 
-    /// Its faces.
+    /// The faces, each as its three corners.
     pub fn triangles(&self) -> impl Iterator<Item = [ParticleId; 3]> + '_ {
         self.faces.iter().map(|corners| corners.map(|corner| self.particles[corner]))
     }
 
-    /// (b − a)·((c − a) × (d − a))/6 = V \[m³\].
+    /// A tetrahedron with (b − a)·((c − a) × (d − a))/6 = V [m³].
     pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Driven>) -> Self {
         Volume::new(&[[a, c, b], [a, b, d], [a, d, c], [b, c, d]], volume)
     }

@@ -1,14 +1,14 @@
-//! Actuator: a push along the line between two particles, constant and swinging with time.
+//! Actuator: a push along the line between two particles, the sum of a constant and an oscillating part.
 //!
 //! ```text
-//! f = f₀ + f₁ cos(ω t + φ)                       [N], positive where it pushes its ends apart
+//! f = f₀ + f₁ cos(ω t + φ)                       [N], positive if it pushes its ends apart
 //! F_a = f n,   F_b = −f n                        [N], L and n as in `line.rs`
 //! power = f L̇·n                                  [W], of either sign, the constant part included
 //! −∂F_a/∂x_a = −f (I − nnᵀ)/|L|                  [N/m]
 //! ```
 //!
-//! At |L| = 0 the direction is undefined, and the force is zero. Beside a rod of the same ends an actuator does no
-//! work and changes the tension of that rod only.
+//! At |L| = 0 the direction is undefined, and the force is zero. An actuator between the ends of a rod does no work and
+//! changes only the tension of the rod.
 
 use super::line::Line;
 use super::{Acts, Dependence, ForceError};
@@ -17,7 +17,7 @@ use crate::point::{Motion, add, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// Push along the line between two particles, constant and swinging with time.
+/// Push along the line between two particles, the sum of a constant and an oscillating part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Actuator {
     /// One end.
@@ -60,7 +60,7 @@ impl Acts for Actuator {
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         let Some(Line { length, .. }) = Line::between(motion, self.a, self.b) else { return };
-        // The largest |f| at any time; the row sum counts both ends.
+        // The bound uses the largest |f| at any time; the row sum has a block for each end.
         let both_ends = 2.0 * (self.push.abs() + self.amplitude.abs()) / length;
         bound(self.a, both_ends, 0.0);
         bound(self.b, both_ends, 0.0);

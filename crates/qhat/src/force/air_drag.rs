@@ -1,15 +1,15 @@
-//! AirDrag: drag of one particle in air that may move, linear (slow, small) and quadratic (fast, large).
+//! AirDrag: drag of one particle in air that may move. The linear part is for slow small bodies, the quadratic part for
+//! fast large bodies.
 //!
 //! ```text
 //! w = w₀ + G x,   u = v − w                               [m/s]
 //! F = −(c₁ + c₂ |u|) u                                    [N], c₁ in N·s/m, c₂ in N·s²/m²
-//! power = F · v                                           [W], of either sign: wind may push
+//! power = F · v                                           [W], of either sign, because wind may push
 //! B = −∂F/∂u = (c₁ + c₂ |u|) I + c₂ uuᵀ/|u|,   −∂F/∂v = B,   −∂F/∂x = −B G
 //! ```
 //!
 //! w₀ is the wind at the origin and G [1/s] its gradient. A ball of radius R in a gas of density ϱ has c₂ = ½ c_w ϱ π
-//! R² (c_w ≈ 0.47). Without relative motion there is no drag, and |u| has no gradient; uuᵀ/|u| is taken as zero
-//! there.
+//! R² (c_w ≈ 0.47). At u = 0 there is no drag and |u| has no gradient; uuᵀ/|u| is taken as zero there.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};
@@ -66,7 +66,7 @@ impl Acts for AirDrag {
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         let most = self.linear + 2.0 * self.quadratic * norm(self.relative(motion));
-        // No row of BG is longer than |B| times the Frobenius norm of G.
+        // |B| times the Frobenius norm of G bounds the rows of BG.
         let squares: f64 = self.gradient[..D].iter().map(|row| dot(first::<D>(row), first::<D>(row))).sum();
         bound(self.particle, most * squares.sqrt(), most);
     }
@@ -87,8 +87,8 @@ impl Acts for AirDrag {
         if speed > 0.0 {
             B = plus(B, rate * self.quadratic / speed, outer(1.0, u, u));
         }
-        // BG is no symmetric matrix. Steps are short, so it is small beside rate·B, and Newton's method does without
-        // it.
+        // BG is not symmetric and is left out. For short steps it is small beside rate·B, so Newton's method converges
+        // without it.
         visit(self.particle, self.particle, Stiffness::Difference(B));
     }
 

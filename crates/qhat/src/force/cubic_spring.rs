@@ -1,5 +1,5 @@
-//! CubicSpring: a damped spring with a cubic term that stiffens (k₃ > 0), softens (k₃ < 0) or has two places of rest
-//! (k₁ < 0 < k₃).
+//! CubicSpring: a damped spring with a cubic term. The spring stiffens with its extension for k₃ > 0, softens for k₃ <
+//! 0, and has two stable lengths for k₁ < 0 < k₃.
 //!
 //! ```text
 //! x = |L| − r                                                [m], L, L̇ and n as in `line.rs`
@@ -70,7 +70,7 @@ impl Acts for CubicSpring {
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         let Some(Line { length, .. }) = Line::between(motion, self.a, self.b) else { return };
-        // The row sum counts both ends.
+        // The row sum has a block for each end.
         let both_ends = 2.0 * self.along(length).abs().max(self.pull(length).abs() / length);
         bound(self.a, both_ends, 2.0 * self.damping);
         bound(self.b, both_ends, 2.0 * self.damping);
@@ -87,8 +87,8 @@ impl Acts for CubicSpring {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
         let Some(line) = Line::between(motion, self.a, self.b) else { return };
-        // The damper also depends on q through n. That part is no symmetric matrix, and Newton's method does without
-        // it.
+        // The damper also depends on q through n. This part is not symmetric and is left out; Newton's method converges
+        // without it.
         let across = (self.pull(line.length) + self.damping * line.rate) / line.length;
         let along = outer(self.along(line.length) + rate * self.damping, line.n, line.n);
         visit(self.a, self.b, Stiffness::Difference(along));

@@ -1,11 +1,11 @@
-//! CustomForce: a potential V(q, t) of a user, written in Rust as V alone [J].
+//! CustomForce: a force with a potential V(q, t) [J] that the user writes in Rust, without derivatives.
 //!
 //! ```text
 //! F_i = −∂V/∂x_i,   −∂F_i/∂x_j = ∂²V/∂x_i∂x_j         (hyper/derivatives.rs)
 //! d(T + V)/dt = ∂V/∂t, the power of an agent that changes V with time     [W]
 //! ```
 //!
-//! The stiffness has no known sign. Where V or a derivative is not finite, the step ends in `StepError`.
+//! The sign of the stiffness is not known. Where V or a derivative is not finite, the step ends in `StepError`.
 
 use super::expression::{largest, sum_of_sizes};
 use super::{Acts, Dependence, ForceError};
@@ -17,15 +17,15 @@ use crate::stiffness::Stiffness;
 use std::fmt;
 use std::sync::Arc;
 
-/// A potential energy V(q, t) of one's own, for [`CustomForce`]: the formula alone, without any derivative.
+/// A potential energy V(q, t) written by a user, for [`CustomForce`]: the formula alone, without any derivative.
 ///
-/// A closure of the same arguments is one, too. [`CustomForce`] has an example.
+/// Closures with the same arguments implement this trait. [`CustomForce`] has an example.
 pub trait CustomPotential: Send + Sync {
     /// V(q, t) \[J\]. `x` has the positions \[m\] of the particles in the order of [`CustomForce::new`], with z = 0
     /// in two dimensions; `t` is the time \[s\].
     ///
-    /// V must be smooth, and depend on `x` and `t` alone: the same arguments give the same V. A function that
-    /// computes with [`Hyper`] alone gives the same bits on every target. A V that is not finite ends the step in an
+    /// V must be smooth and must depend on `x` and `t` alone: the same arguments give the same V. A function that uses
+    /// only operations of [`Hyper`] gives the same bits on every target. A V that is not finite ends the step in an
     /// error.
     fn potential(&self, x: &[[Hyper; 3]], t: Hyper) -> Hyper;
 }
@@ -36,10 +36,10 @@ impl<F: Fn(&[[Hyper; 3]], Hyper) -> Hyper + Send + Sync> CustomPotential for F {
     }
 }
 
-/// A force of one's own, from its potential: it pulls each of its particles downhill.
+/// A force with a potential written by the user: F = −∂V/∂x on each particle.
 ///
-/// Two custom forces are equal if they share the potential, as clones do, and have the same particles. Threads share
-/// the potential, too, hence `Send + Sync`.
+/// Two custom forces are equal if they share the potential (as clones do) and have the same particles. Threads share
+/// the potential, so it must be `Send + Sync`.
 ///
 /// A bead on a spiral wire r = a θ, and a potential well that pulls the bead to the middle:
 ///
@@ -85,7 +85,7 @@ pub struct CustomForce {
 }
 
 impl CustomForce {
-    /// The force of a potential of the positions of some particles, each named once.
+    /// The force of a potential of the positions of these particles. Each particle is named once.
     pub fn new(particles: impl Into<Vec<ParticleId>>, potential: impl CustomPotential + 'static) -> Self {
         CustomForce { particles: particles.into().into(), potential: Arc::new(potential) }
     }

@@ -1,4 +1,4 @@
-//! Drag: viscous drag, the source's "damping", which slows every particle.
+//! Drag: viscous drag, which slows every particle. The source calls it damping.
 //!
 //! ```text
 //! F_i = −kd v_i                  [N], kd in N·s/m

@@ -1,4 +1,5 @@
-//! Expressions as forces: one expression for each component of a force on one particle, or a potential energy.
+//! Forces as expressions: one expression for each component of a force on one particle, or one expression for a
+//! potential energy.
 //!
 //! Force, of positions, velocities and time [N]:
 //!
@@ -7,9 +8,9 @@
 //! −∂F_k/∂x_j − rate ∂F_k/∂v_j     from the gradient of F_k
 //! ```
 //!
-//! The other particles that F depends on need not feel a force, so the stiffness is no symmetric matrix. Methods that
-//! solve at the end of the step take the symmetric part ½ (K + Kᵀ) in their matrix. The other part costs iterations,
-//! not accuracy.
+//! F may depend on particles that feel no force themselves, so the stiffness K is not symmetric. Implicit methods use
+//! the symmetric part ½ (K + Kᵀ) in their matrix. The antisymmetric part, which is left out, costs iterations and not
+//! accuracy.
 //!
 //! Potential, of positions and time [J]:
 //!
@@ -18,7 +19,7 @@
 //! d(T + V)/dt = ∂V/∂t, the power of an agent that changes V with time     [W]
 //! ```
 //!
-//! Neither has a stiffness of known sign. Where a number is not finite, the step ends in `StepError`.
+//! The sign of the stiffness is not known for either. If a number is not finite, the step ends in `StepError`.
 
 use super::{Acts, Dependence, ForceError};
 use crate::expression::{Expression, LONGEST_GRADIENT, MAX_NAMES};
@@ -27,19 +28,19 @@ use crate::point::{Motion, Point, add, dot};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// A force on one particle, an expression for each component.
+/// A force on one particle, with an expression for each component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// F \[N\], d of them.
+    /// The d components of F [N].
     pub components: Vec<Expression>,
 }
 
-/// A potential energy as an expression: it pulls every particle it depends on downhill.
+/// A potential energy V as an expression. The force on every particle in V is −∂V/∂x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionPotential {
-    /// V \[J\].
+    /// V [J].
     pub potential: Expression,
 }
 

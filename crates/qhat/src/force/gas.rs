@@ -1,18 +1,18 @@
-//! Gas: a gas inside a closed loop in the plane, or a closed mesh in space. Its pressure follows the area or volume A
+//! Gas: a gas inside a closed loop in the plane or a closed mesh in space. Its pressure depends on the area or volume A
 //! inside.
 //!
 //! ```text
-//! A = Σ of what the facets enclose (pressure.rs),   p = p₀ (A₀/A)^γ,   p A^γ stays
+//! A = Σ of the areas or volumes of the facets (pressure.rs),   p = p₀ (A₀/A)^γ,   p A^γ is constant
 //! l = ln(A/A₀),   V = ∫ p dA from A to A₀ = p₀ A₀ ((A₀/A)^(γ−1) − 1)/(γ − 1) = p₀ A₀ expm1((1 − γ) l)/(γ − 1)
-//!                 V = −p₀ A₀ l where γ = 1
+//!                 V = −p₀ A₀ l for γ = 1
 //! F = −∂V/∂x = p ∂A/∂x
 //! −∂F/∂x = −p ∂²A/∂x² + (γ p/A) (∂A/∂x)(∂A/∂x)ᵀ
 //! ```
 //!
-//! γ = 1 keeps the temperature. 7/5 is air that has no time to exchange heat, 5/3 a gas of single atoms; these values
-//! are for space. In methods that solve at the end of the step the last term couples every two particles of the gas:
-//! hence the bound on their number. For γ ≥ 1 the energy goes to infinity at A = 0, so that a gas keeps A above 0.
-//! Beyond A = 0 the numbers are NaN, and an adaptive method rejects the substep.
+//! γ = 1 is a gas at constant temperature. In space, γ = 7/5 is air and γ = 5/3 a monatomic gas, both without exchange
+//! of heat. In implicit methods the last term couples every two particles of the gas, so their number is bounded. For γ
+//! ≥ 1 the energy goes to infinity at A = 0, so the gas keeps A above 0. For A ≤ 0 the numbers are NaN, and an adaptive
+//! method rejects the substep.
 
 use super::pressure::Facet;
 use super::{Acts, Dependence, ForceError};
@@ -22,16 +22,17 @@ use crate::point::{Motion, Point, add, norm};
 use crate::space::{Dimension, ParticleId};
 use crate::stiffness::Stiffness;
 
-/// The largest number of particles of one gas: every two of them are coupled.
+/// The largest number of particles of one gas. Every two of its particles are coupled, so memory and time grow with the
+/// square of this number.
 const MOST: usize = 200;
 
-/// A gas that a closed loop of edges or a closed mesh of triangles holds.
+/// A gas in a closed loop of edges or a closed mesh of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gas {
     facets: Vec<Facet>,
     /// The particles, each once.
     particles: Vec<ParticleId>,
-    /// For each facet the numbers of its corners among the particles.
+    /// The corners of each facet, as indices into `particles`.
     corners: Vec<[usize; 3]>,
     pressure: f64,
     exponent: f64,
@@ -39,9 +40,9 @@ pub struct Gas {
 }
 
 impl Gas {
-    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ at positions q \[m\], flat, d numbers a
-    /// particle, where it fills A₀. Edges must go round counter-clockwise, and triangles as seen from outside. A
-    /// particle beyond the positions makes A₀ NaN, which building a system refuses.
+    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ. A₀ is its area or volume at positions q [m],
+    /// flat, d numbers for each particle. Edges must go round counter-clockwise, and triangles counter-clockwise as
+    /// seen from outside. A particle without a position in q makes A₀ NaN, which the builder of the system rejects.
     pub fn new(facets: Vec<Facet>, pressure: f64, exponent: f64, dimension: Dimension, q: &[f64]) -> Self {
         let mut particles: Vec<ParticleId> = Vec::new();
         let mut corners = Vec::with_capacity(facets.len());
@@ -54,7 +55,7 @@ impl Gas {
                 });
             }
             corners.push(numbers);
-            // Building a system refuses a larger gas, so the search for particles may end.
+            // The builder of the system rejects a larger gas, so the search for particles may end.
             if particles.len() > MOST {
                 break;
             }
@@ -79,7 +80,7 @@ impl Gas {
         self.content
     }
 
-    /// `Ok` if the numbers and the facets are those of a gas.
+    /// `Ok` if the numbers and the facets are allowed.
     ///
     /// # Errors
     /// In words: what is wrong with the numbers or the facets.

@@ -1,4 +1,4 @@
-//! HarmonicForce: a force on one particle that swings with time.
+//! HarmonicForce: a force on one particle that oscillates with time.
 //!
 //! ```text
 //! F = f cos(ω t + φ)             [N]
@@ -11,7 +11,7 @@ use crate::point::{Motion, Point, add, dot, first, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// Force on one particle that swings with time.
+/// Force on one particle that oscillates with time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HarmonicForce {
     /// The particle it acts on.
@@ -46,7 +46,8 @@ impl Acts for HarmonicForce {
 
     fn stiffness<const D: usize>(&self, _: Motion<'_, D>, _: &mut impl FnMut(ParticleId, f64, f64)) {}
 
-    // The time counts as motion: a force that depends on nothing is evaluated once a frame.
+    // A force that depends on nothing is evaluated once for each frame. This force depends on t, which counts as
+    // motion.
     fn dependence(&self) -> Dependence {
         Dependence::Motion
     }

@@ -8,9 +8,9 @@
 //! −∂F_a/∂x_a = −s/ρ³ I + 3 s ddᵀ/ρ⁵                      [N/m]
 //! ```
 //!
-//! s [N·m²] is −G m_a m_b for masses, which attract, and k q_a q_b for charges. ε [m] is the softening length
-//! (Plummer's): the force is then finite, |F| ≤ 0.385 |s|/ε². With ε = 0 two particles at the same place have no
-//! direction. Their force is taken as zero there, and V has no finite value. The eigenvalues of the stiffness are
+//! s [N·m²] is −G m_a m_b for masses and k q_a q_b for charges; a negative s attracts. ε [m] is the softening length
+//! (Plummer's): the force is then finite, |F| ≤ 0.385 |s|/ε². For ε = 0 and two particles at the same point, d
+//! has no direction: the force is taken as zero there, and V is not finite. The eigenvalues of the stiffness are
 //! −s/ρ³ and s (3|d|²/ρ² − 1)/ρ³, neither above 2|s|/ρ³.
 
 use super::{Acts, Dependence, ForceError};
@@ -27,13 +27,13 @@ pub struct InverseSquare {
     pub a: ParticleId,
     /// The other particle.
     pub b: ParticleId,
-    /// s [N·m²]: −G m_a m_b, which attracts, or k q_a q_b.
+    /// s [N·m²]: −G m_a m_b or k q_a q_b. A negative s attracts.
     pub strength: f64,
     /// ε, the softening length \[m\], not negative.
     pub softening: f64,
 }
 
-/// s and ε of one force; the equations of this file.
+/// s and ε of one force, with the equations of this file.
 #[derive(Clone, Copy)]
 pub(super) struct Law {
     pub(super) s: f64,
@@ -114,7 +114,7 @@ impl Acts for InverseSquare {
     }
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
-        // The row sum counts both ends.
+        // The row sum has a block for each end.
         let both_ends = 2.0 * self.law().bound(self.apart(motion));
         bound(self.a, both_ends, 0.0);
         bound(self.b, both_ends, 0.0);

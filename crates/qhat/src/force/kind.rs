@@ -13,18 +13,18 @@ pub(crate) trait Acts {
     /// Potential energy [J]; zero for a force without a potential.
     fn potential<const D: usize>(&self, motion: Motion<'_, D>, mass: &[f64]) -> f64;
 
-    /// Power of the part that has no potential [W]; negative where it takes energy.
+    /// Power of the part that has no potential [W]; negative if it takes energy from the particles.
     fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
     /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with bounds on the row sums of −∂Q/∂q and −∂Q/∂q̇.
-    /// They limit the step of an explicit method.
+    /// The bounds limit the step of an explicit method.
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
 
     /// The arguments that the force depends on between two changes of its numbers.
     fn dependence(&self) -> Dependence;
 
-    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for a method that solves at the end of the step,
-    /// where q̇ follows q at `rate` [1/s]. A force may couple only particles that `particles` names.
+    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for an implicit method, in which q̇ changes with q
+    /// at `rate` [1/s]. A force may couple only particles that `particles` names.
     fn tangent<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -32,7 +32,7 @@ pub(crate) trait Acts {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     );
 
-    /// The only number of dimensions that the force has a meaning in; `None` where it has one in both.
+    /// The only number of dimensions in which the force can be used; `None` if it can be used in two and in three.
     fn dimension(&self) -> Option<usize> {
         None
     }
@@ -47,10 +47,10 @@ pub(crate) trait Acts {
 /// The arguments that a force depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Dependence {
-    /// None: the force is the same at every motion.
+    /// No argument: the force is constant.
     Nothing,
-    /// −coefficient q̇ on every particle [N·s/m].
+    /// The velocity of each particle: the force is −coefficient q̇ [N·s/m] on every particle.
     Drag(f64),
-    /// The positions and velocities of the particles it names, and the time.
+    /// The positions and velocities of the particles that the force names, and the time.
     Motion,
 }

@@ -16,7 +16,7 @@ pub(super) struct Line<const D: usize> {
 }
 
 impl<const D: usize> Line<D> {
-    /// `None` where |L| = 0 and no direction is defined.
+    /// The line from b to a; `None` at |L| = 0, where no direction is defined.
     pub(super) fn between(motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Option<Self> {
         let L = minus(motion.x(a), motion.x(b));
         let Ld = minus(motion.v(a), motion.v(b));

@@ -1,4 +1,5 @@
-//! Applied forces: Q = Σ of every force on every particle [N], with the energy that each force stores or takes.
+//! Applied forces: Q is the sum of all forces on each particle [N]. Each force also gives the energy that it stores and
+//! the power that it takes.
 //!
 //! To add a force, write one file here that implements `Acts`, and name it in the list below.
 
@@ -49,7 +50,7 @@ use crate::stiffness::Stiffness;
 
 macro_rules! forces {
     ($($(#[$doc:meta])* $kind:ident,)*) => {
-        /// Any force; one variant a kind.
+        /// Any force; one variant for each kind.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum Force { $($(#[$doc])* $kind($kind),)* }
@@ -116,7 +117,7 @@ forces! {
     PointForce,
     /// Damped spring between one particle and a point that a hand moves.
     MouseSpring,
-    /// A force on one particle, an expression for each component.
+    /// A force on one particle, with an expression for each component.
     ExpressionForce,
     /// A potential energy as an expression.
     ExpressionPotential,
@@ -128,9 +129,9 @@ forces! {
     InverseSquare,
     /// Linear and quadratic drag of one particle in air that may move.
     AirDrag,
-    /// Force on one particle that swings with time.
+    /// Force on one particle that oscillates with time.
     HarmonicForce,
-    /// Push along the line between two particles, constant and swinging with time.
+    /// Push along the line between two particles, the sum of a constant and an oscillating part.
     Actuator,
     /// Spring between two particles with a cubic term.
     CubicSpring,
@@ -138,6 +139,6 @@ forces! {
     TorsionSpring,
     /// Pressure on one edge of a closed loop or one triangle of a closed mesh.
     Pressure,
-    /// A gas in a closed loop or mesh, whose pressure follows what it fills.
+    /// A gas in a closed loop or mesh, whose pressure depends on the area or volume inside.
     Gas,
 }

@@ -1,4 +1,4 @@
-//! MouseSpring: a damped spring of no length between a particle and the point p that a hand moves.
+//! MouseSpring: a damped spring of rest length zero between a particle and a point p that a hand moves.
 //!
 //! ```text
 //! F = −ks (x − p) − kd v         [N]
@@ -6,7 +6,8 @@
 //! power of the damper = −kd v·v  [W]
 //! ```
 //!
-//! p moves between steps, not within one. The work of moving p is the jump of V, which `Simulation` counts.
+//! p moves between steps and never within a step. The work of moving p is the jump of V, which `Simulation` adds to its
+//! account of energy.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};

@@ -1,5 +1,5 @@
-//! Pressure: pressure inside a closed loop of edges in the plane, or a closed mesh of triangles in space; one force a
-//! facet.
+//! Pressure: pressure inside a closed loop of edges in the plane or a closed mesh of triangles in space; one force for
+//! each facet.
 //!
 //! ```text
 //! edge ab:       A = ½ (x_a y_b − y_a x_b)           V = −p A        F_a = ½ p (y_b, −x_b),   F_b = ½ p (−y_a, x_a)
@@ -7,11 +7,11 @@
 //! −∂F_a/∂x_b:    −½ p [0 1; −1 0]                    ⅙ p [x_c]×
 //! ```
 //!
-//! A and U are the signed area and volume between a facet and the origin, by Gauss's theorem. They add up to the area
-//! or volume inside if the loop goes round counter-clockwise, or the triangles of the mesh do as seen from outside.
-//! Only then does the origin drop out. At a corner of a loop the force is ½ p times the chord of its two neighbours,
-//! turned outward. p is in N/m in the plane (a pressure times a depth) and in Pa in space. An edge in space acts in
-//! the x–y plane. A triangle in the plane encloses nothing, and its force is zero.
+//! A and U are the signed area and volume between a facet and the origin. By Gauss's theorem their sum over all facets
+//! is the area or volume inside, if the edges go round counter-clockwise, or the triangles counter-clockwise as seen
+//! from outside. Only then does the sum not depend on the origin. At a corner of a loop the force is ½ p times the
+//! chord of its two neighbours, turned outward. p is in N/m in the plane (a pressure times a depth) and in Pa in space.
+//! An edge in space acts in the x–y plane. The force of a triangle in the plane is zero.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::finite;
@@ -21,12 +21,12 @@ use crate::point::{Motion, Point, add, minus, norm};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
 
-/// One piece of a closed loop or mesh.
+/// One edge of a closed loop or one triangle of a closed mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
-    /// a, b of a loop that goes round counter-clockwise.
+    /// The edge from a to b of a loop that goes round counter-clockwise.
     Edge([ParticleId; 2]),
-    /// a, b, c, counter-clockwise as seen from outside.
+    /// The triangle a, b, c, counter-clockwise as seen from outside.
     Triangle([ParticleId; 3]),
 }
 
@@ -35,12 +35,12 @@ pub enum Facet {
 pub struct Pressure {
     /// The facet under pressure.
     pub facet: Facet,
-    /// p [N/m on an edge, Pa on a triangle], positive where it pushes outward.
+    /// p [N/m on an edge, Pa on a triangle], positive if it pushes outward.
     pub pressure: f64,
 }
 
 impl Pressure {
-    /// The pressure in a loop of particles that goes round counter-clockwise: one force an edge.
+    /// The pressure in a loop of particles that goes round counter-clockwise: one force for each edge.
     pub fn in_loop(outline: &[ParticleId], pressure: f64) -> impl Iterator<Item = Pressure> + '_ {
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         ends.map(move |(&a, &b)| Pressure { facet: Facet::Edge([a, b]), pressure })
@@ -48,7 +48,7 @@ impl Pressure {
 }
 
 impl Facet {
-    /// The particles at its corners.
+    /// The particles at the corners.
     pub fn corners(&self) -> &[ParticleId] {
         match self {
             Facet::Edge(corners) => corners,
@@ -68,7 +68,7 @@ impl Facet {
         }
     }
 
-    /// Calls `visit(particle, share, v)` with ∂A/∂x or ∂U/∂x of each corner in their order, which is share times v.
+    /// Calls `visit(particle, share, v)` for each corner in order, where share times v is ∂A/∂x or ∂U/∂x.
     pub(super) fn gradient<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -95,8 +95,9 @@ impl Facet {
         pressure: f64,
         bound: &mut impl FnMut(ParticleId, f64, f64),
     ) {
-        // Where the facets close, the block of an edge of two triangles is ⅙ p [x_c − x_d]×: what counts is how far
-        // they reach, not where the origin is. Each triangle answers for its side of the two edges at a corner.
+        // In a closed mesh the two triangles at an edge add up to the block ⅙ p [x_c − x_d]×. The bound therefore uses
+        // distances between corners and not from the origin. Each triangle bounds its part of the two edges at a
+        // corner.
         match *self {
             Facet::Edge(ends) => ends.into_iter().for_each(|id| bound(id, 0.5 * pressure.abs(), 0.0)),
             Facet::Triangle([a, b, c]) => {
@@ -108,7 +109,7 @@ impl Facet {
         }
     }
 
-    /// Hands over −p times the second derivatives.
+    /// Calls `visit` with −p times the second derivatives.
     pub(super) fn tangent<const D: usize>(
         &self,
         motion: Motion<'_, D>,
@@ -142,7 +143,7 @@ fn place<const D: usize>(motion: Motion<'_, D>, particle: ParticleId) -> Point<3
     raised(motion.x(particle))
 }
 
-/// The rows and columns of the dimensions there are.
+/// The first D rows and columns.
 fn within<const D: usize>(full: Block<3>) -> Block<D> {
     std::array::from_fn(|i| std::array::from_fn(|j| full[i][j]))
 }

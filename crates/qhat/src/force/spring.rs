@@ -1,5 +1,4 @@
-//! Spring: a damped Hookean spring (the source's external force with the sign of its damping corrected; method notes,
-//! slips).
+//! Spring: a damped Hookean spring. It is the external force of the source with the sign of the damping corrected.
 //!
 //! ```text
 //! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
@@ -9,8 +8,8 @@
 //! −∂F_a/∂x_a = ks nnᵀ + [ks (|L| − r) + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
-//! ks [N/m] and kd [N·s/m] belong to the spring and are not the feedback coefficients. At |L| = 0 the direction is
-//! undefined, and the force is zero, which is exact for r = 0.
+//! ks [N/m] and kd [N·s/m] are the spring's own and not the feedback coefficients of the same name. At |L| = 0 the
+//! direction is undefined, and the force is zero, which is exact for r = 0.
 
 use super::line::Line;
 use super::{Acts, Dependence, ForceError};
@@ -55,7 +54,7 @@ impl Acts for Spring {
 
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64)) {
         let Some(Line { length, .. }) = Line::between(motion, self.a, self.b) else { return };
-        // Along the spring ks, across it pull/|L|; the row sum counts both ends.
+        // The stiffness is ks along the spring and pull/|L| across it; the row sum has a block for each end.
         let across = self.stiffness * (length - self.rest).abs() / length;
         let both_ends = 2.0 * self.stiffness.max(across);
         bound(self.a, both_ends, 2.0 * self.damping);
@@ -73,14 +72,14 @@ impl Acts for Spring {
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
         let Some(line) = Line::between(motion, self.a, self.b) else {
-            // A spring of no rest length is linear, and has its stiffness in every direction.
+            // A spring of rest length zero is linear and has the stiffness ks in every direction.
             if self.rest == 0.0 {
                 visit(self.a, self.b, Stiffness::Difference(diagonal(self.stiffness)));
             }
             return;
         };
-        // The damper also depends on q through n. That part is no symmetric matrix, and Newton's method does without
-        // it.
+        // The damper also depends on q through n. This part is not symmetric and is left out; Newton's method converges
+        // without it.
         let across = (self.stiffness * (line.length - self.rest) + self.damping * line.rate) / line.length;
         let definite = outer(self.stiffness + rate * self.damping, line.n, line.n);
         let geometric = line.across(across);

@@ -1,12 +1,12 @@
-//! Every kind of force against differences: Q against the potential, the tangent and its bound against Q, the power
-//! against both.
+//! Compares every kind of force with differences: Q with the potential, the tangent and its bound with Q, and the power
+//! with both.
 
 use super::*;
 use crate::hyper::Hyper;
 use crate::linalg::block::{diagonal, outer, plus, transposed};
 use crate::space::Dimension;
 
-/// Numbers in [−1, 1) that look random and are the same everywhere.
+/// Pseudo-random numbers in [−1, 1), the same on every machine.
 struct Numbers(u64);
 
 impl Numbers {
@@ -23,11 +23,12 @@ impl Numbers {
 const PARTICLES: usize = 4;
 const RATE: f64 = 7.0;
 const T: f64 = 0.4;
-/// Central differences of numbers below 100 with third derivatives below 1e4: 1e-7 from those, 1e-9 from roundoff.
+/// Step of central differences. For numbers below 100 with third derivatives below 1e4 the error is 1e-7 from the third
+/// derivatives and 1e-9 from roundoff.
 const STEP: f64 = 3e-6;
 const CLOSE: f64 = 1e-6;
 
-/// Forces that belong together, and whether a potential accounts for all that they do at rest.
+/// Forces that belong together, and whether they all have potentials when the particles are at rest.
 struct Case {
     name: &'static str,
     forces: Vec<Force>,
@@ -53,7 +54,8 @@ fn cases<const D: usize>() -> Vec<Case> {
         case(name, Gas::new(facets, 3.0, exponent, Dimension::Three, &corners), true)
     };
     let edges = || [[a, b], [b, c], [c, d], [d, a]].map(Facet::Edge).to_vec();
-    // Of these corners the faces above see the inside; in the plane triangles enclose nothing for a gas to fill.
+    // The faces above run clockwise as seen from outside and are turned here. In the plane triangles enclose no volume,
+    // so a gas has edges there.
     let outside = faces.map(|[a, b, c]| Facet::Triangle([a, c, b])).to_vec();
     let in_space = (D == 3).then(|| gas("gas in a mesh", outside, 1.4));
     let all = vec![
@@ -183,7 +185,8 @@ fn check_all<const D: usize>() {
     let mut numbers = Numbers(1);
     for case in cases::<D>() {
         for _ in 0..12 {
-            // The corners of a square, or of a tetrahedron, moved a little: nothing is close to coincident or straight.
+            // The corners of a square or of a tetrahedron, moved a little, so that no two particles are close to each
+            // other and no hinge is close to straight.
             let corners = [[-1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, 1.0]];
             let q: Vec<f64> = corners.iter().flat_map(|x| x[..D].to_vec()).map(|x| x + 0.3 * numbers.next()).collect();
             check_one::<D>(&case, &q, &numbers.vector(q.len()));
@@ -208,7 +211,8 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
     let power: f64 = case.forces.iter().map(|force| force.power(motion)).sum();
     assert!((power - expected).abs() < 10.0 * CLOSE, "{name}, D = {D}: power {power}, F·v + dV/dt = {expected}");
 
-    // At rest, where a damper's direction does not matter.
+    // The particles are at rest, so that the change of a damper's direction, which the tangent leaves out, has no
+    // effect.
     let by_position = minus_slopes(q, |q| case.force::<D>(q, &still));
     let by_velocity = minus_slopes(&still, |qd| case.force::<D>(q, qd));
     let dense = tangent::<D>(case, q, &still);
@@ -264,7 +268,8 @@ fn every_force_agrees_with_its_derivatives_in_space() {
     check_all::<3>();
 }
 
-/// Arms in one line at rest: the limit of hinges that are less and less bent, whichever direction across is taken.
+/// With arms in line at rest, the tangent is the limit of the tangents of hinges that are less and less bent, for every
+/// direction in which they bend.
 #[test]
 fn a_straight_hinge_is_stiff_both_ways_across() {
     let [a, b, c] = [0, 1, 2].map(ParticleId);
@@ -273,7 +278,7 @@ fn a_straight_hinge_is_stiff_both_ways_across() {
     let case = case("straight", torsion, true);
     assert_eq!(case.force::<3>(&q, &[0.0; 12]), [0.0; 12]);
     let dense = tangent::<3>(&case, &q, &[0.0; 12]);
-    // V = ½ k (y_a/1 + y_c/0.5 − 3 y_b)², and the same of z.
+    // V = ½ k (y_a/1 + y_c/0.5 − 3 y_b)², and the same in z.
     let slope = [1.0, -3.0, 2.0];
     for (i, one) in slope.iter().enumerate() {
         for (j, other) in slope.iter().enumerate() {
@@ -288,7 +293,7 @@ fn a_straight_hinge_is_stiff_both_ways_across() {
     }
 }
 
-/// What has no direction pulls nowhere, and nothing becomes undefined.
+/// A force whose direction is undefined is zero, and all numbers stay finite.
 #[test]
 fn forces_of_no_direction_are_zero() {
     let [a, b, c] = [0, 1, 2].map(ParticleId);

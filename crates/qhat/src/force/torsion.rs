@@ -8,23 +8,25 @@
 //! −∂F/∂q − rate ∂F/∂q̇ = (k + rate kd) ∇θ∇θᵀ + k Δ ∇²θ + …   [N/m]
 //! ```
 //!
-//! In the plane θ is signed, positive counter-clockwise. Δ is taken within (−π, π] by turning u by θ₀ first: the arms
-//! may pass through straight, and V has its kink where the hinge is bent π away from rest. With ⊥(x, y) = (−y, x):
+//! In the plane θ is signed, positive counter-clockwise. u is turned by θ₀ first, so that Δ lies in (−π, π]. The arms
+//! may therefore pass through the straight position; V has a kink only at Δ = π. With ⊥(x, y) = (−y, x):
 //!
 //! ```text
-//! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|², ∂²θ/∂u² its opposite with u, mixed zero
+//! ∂θ/∂u = −⊥u/|u|²,   ∂θ/∂w = ⊥w/|w|²,   ∂²θ/∂u∂w = 0
+//! ∂²θ/∂w² = −[ŵ ŵ⊥ᵀ + ŵ⊥ ŵᵀ]/|w|²,   ∂²θ/∂u² = [û û⊥ᵀ + û⊥ ûᵀ]/|u|²
 //! ```
 //!
-//! In space θ is unsigned, in [0, π]. n_u and n_w are the unit vectors across each arm towards the other, m the
-//! normal of both arms:
+//! In space θ is unsigned, in [0, π]. n_u and n_w are the unit vectors at right angles to each arm, towards the other
+//! arm; m is the unit vector at right angles to both arms:
 //!
 //! ```text
-//! ∂θ/∂u = −n_u/|u|,   ∂²θ/∂u² = [û n_uᵀ + n_u ûᵀ + cot θ mmᵀ]/|u|²,   ∂²θ/∂u∂w = −mmᵀ/(sin θ |u||w|); w alike
+//! ∂θ/∂u = −n_u/|u|,   ∂²θ/∂u² = [û n_uᵀ + n_u ûᵀ + cot θ mmᵀ]/|u|²,   ∂²θ/∂u∂w = −mmᵀ/(sin θ |u||w|); ∂²θ/∂w² likewise
 //! ```
 //!
-//! Straight (θ = π) or folded (0) arms in space have no n. At rest there (θ₀ = π, 0) the limit is an isotropic
-//! spring, of which any n is right. Otherwise the force, which is finite beside that place, is taken as zero. An arm
-//! of no length has no angle: the force is zero, V is that of θ = 0, and near there the force grows as 1/|u|.
+//! Straight (θ = π) or folded (θ = 0) arms in space have no n. If the rest angle θ₀ is the same π or 0, the limit is an
+//! isotropic spring, for which any n is correct. Otherwise the force is finite near this position and is taken as zero
+//! at it. An arm of length zero has no angle: the force is zero, and V is the value at θ = 0. Near this position the
+//! force grows as 1/|u|.
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
@@ -52,7 +54,8 @@ pub struct TorsionSpring {
     pub angle: f64,
 }
 
-/// One arm: its direction, its length, the unit vector across it in which θ changes most, and the sign of that change.
+/// One arm: its direction, its length, the unit vector across it along which θ changes most, and the sign of this
+/// change.
 struct Arm<const D: usize> {
     along: Point<D>,
     length: f64,
@@ -118,7 +121,7 @@ impl TorsionSpring {
         if delta != 0.0 {
             return None;
         }
-        // Any direction across: that of the axis that the arm is least along.
+        // Any direction across is correct. It is made from the axis along which the arm has its smallest component.
         let least = (1..D).fold(0, |least, k| if u.0[k].abs() < u.0[least].abs() { k } else { least });
         let axis: Point<D> = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
         let n = plus_scaled(axis, -dot(axis, u.0), u.0);
@@ -176,7 +179,8 @@ impl Acts for TorsionSpring {
         let (u, w) = (1.0 / bend.u.length, 1.0 / bend.w.length);
         let torque = self.stiffness * bend.delta.abs();
         let aside = self.stiffness * (bend.by_sine.abs() + bend.by_tangent.abs());
-        // |∇θ| is u, w and at most u + w; a row sums its product with all three, 2 (u + w).
+        // |∇θ| is u and w at the ends and at most u + w at the hinge. A row sums the products with all three, at most
+        // 2 (u + w).
         let all = 2.0 * (u + w);
         for (id, most) in [(self.a, u), (self.b, u + w), (self.c, w)] {
             bound(id, most * all * (self.stiffness + torque + aside), most * all * self.damping);
@@ -201,8 +205,8 @@ impl Acts for TorsionSpring {
                 visit(first, second, Stiffness::Definite(outer(along, g, other)));
             }
         }
-        // The damper also depends on q through ∇θ. That part is no symmetric matrix, and Newton's method does without
-        // it.
+        // The damper also depends on q through ∇θ. This part is not symmetric and is left out; Newton's method
+        // converges without it.
         let torque = self.stiffness * bend.delta + self.damping * Self::rate(motion, &gradient);
         let (mut uu, mut ww, mut uw) = (zero(), zero(), zero());
         uu = plus(uu, torque, bend.u.curvature());

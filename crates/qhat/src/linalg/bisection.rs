@@ -1,8 +1,9 @@
-//! Cutting a connected graph in two of about the same size with few edges cut.
+//! Bisection: cuts a connected graph into two parts of about the same size and cuts few edges.
 //!
-//! The graph is looked at from four landmarks that lie far apart. The hops to a landmark, and the differences of the
-//! hops to two, serve as coordinates: on a net the difference of two corners runs straight along one side. Along each
-//! coordinate the best place to cut is taken, and the best cut of all is refined by moving single vertices over it.
+//! Four vertices that lie far apart are the landmarks. The coordinates of a vertex are its numbers of hops to each
+//! landmark and the differences of its hops to two landmarks: with two corners of a net as landmarks, the difference
+//! grows straight along one side. The best cut along each coordinate is found, and the best of these cuts is refined by
+//! moving single vertices across it.
 //! Sources: Harel and Koren, Graph drawing by high-dimensional embedding (2002), for the landmarks; Fiduccia and
 //! Mattheyses, A linear-time heuristic for improving network partitions (1982), for the refinement.
 
@@ -15,10 +16,10 @@ pub(crate) struct Graph {
     pub(crate) to: Vec<u32>,
 }
 
-/// A part holds at least this share of the vertices (in percent).
+/// Least share of the vertices in a part [percent].
 const SMALLEST_PART: usize = 40;
 
-/// Refinement gives up a walk after this many moves without a new best.
+/// Moves without a new best cut after which refinement ends a walk.
 const PATIENCE: usize = 60;
 
 impl Graph {
@@ -30,7 +31,7 @@ impl Graph {
         &self.to[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
     }
 
-    /// Hops from v to every vertex; `u32::MAX` where there is no way.
+    /// Hops from v to every vertex; `u32::MAX` where no path leads.
     fn hops(&self, v: u32) -> Vec<u32> {
         let mut hops = vec![u32::MAX; self.vertices()];
         hops[v as usize] = 0;
@@ -50,7 +51,7 @@ impl Graph {
     }
 }
 
-/// For every vertex of a connected graph, which side it is on.
+/// The side of every vertex of a connected graph.
 pub(crate) fn bisect(graph: &Graph) -> Vec<bool> {
     let hops = landmarks(graph);
     let n = graph.vertices();
@@ -83,7 +84,8 @@ fn landmarks(graph: &Graph) -> Vec<Vec<u32>> {
     let second = graph.hops(farthest(&|v| hops[0][v]));
     hops.push(second);
     for _ in 0..2 {
-        // Far from all so far, and of those at about that distance (a whole diagonal of a net) one at the end.
+        // Many vertices may be about as far from the landmarks so far (a whole diagonal of a net): the next landmark is
+        // a vertex at the end of them.
         let nearest = |v: usize| hops.iter().map(|h| h[v]).min().unwrap_or(0);
         let some = farthest(&nearest);
         let least = nearest(some as usize) * 4 / 5;
@@ -100,13 +102,13 @@ struct Cut {
     low: Vec<bool>,
 }
 
-/// Edges cut, dearer the more uneven the parts.
+/// Cost of a cut: its number of edges, increased with the difference in size of the parts.
 fn score(cut: i64, low: usize, n: usize) -> f64 {
     let uneven = (2 * low) as f64 / n as f64 - 1.0;
     cut as f64 * (1.0 + 4.0 * uneven * uneven)
 }
 
-/// The best cut between vertices in the order of their keys; without sides where it is no better than `known`.
+/// The best cut between vertices in the order of their keys; its sides are empty if it is no better than `known`.
 fn along(graph: &Graph, key: &[i64], known: f64) -> Cut {
     let n = key.len();
     let smallest = key.iter().copied().min().unwrap_or(0);
@@ -141,7 +143,7 @@ fn along(graph: &Graph, key: &[i64], known: f64) -> Cut {
         if known < f64::INFINITY {
             return Cut { score: f64::INFINITY, low: Vec::new() };
         }
-        // Two or three vertices have no cut that even.
+        // Two or three vertices have no cut into parts of the required size.
         length = n / 2;
         best = f64::MAX;
     }
@@ -151,7 +153,7 @@ fn along(graph: &Graph, key: &[i64], known: f64) -> Cut {
     Cut { score: best, low }
 }
 
-/// Moves single vertices, the most gainful first, and goes back to the best sides seen.
+/// Moves single vertices, the vertex with the greatest gain first, and returns to the best sides that it met.
 fn refine(graph: &Graph, low: &mut [bool]) {
     let n = low.len();
     loop {

@@ -1,4 +1,4 @@
-//! Small square blocks: the entries of a matrix whose unknowns come D at a time.
+//! Small square blocks: the entries of a matrix whose unknowns are vectors of D components.
 
 /// D × D numbers, row after row.
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
@@ -143,7 +143,7 @@ pub(crate) fn divide<const D: usize>(factor: &Block<D>, x: [f64; D]) -> [f64; D]
     std::array::from_fn(|i| factor[i][i] * x[i])
 }
 
-/// Σ over k < D, from the first on.
+/// Σ over k < D, in ascending order of k.
 #[inline(always)]
 fn sum<const D: usize>(term: impl Fn(usize) -> f64) -> f64 {
     let mut total = term(0);

@@ -5,9 +5,9 @@
 //! Y_i = (A_ki − Σ_{j<i} Y_j L_ijᵀ) L_ii⁻ᵀ,   L_ki = Y_i D_i⁻¹,   L_kk D_k L_kkᵀ = A_kk − Σ_{i<k} L_ki Y_iᵀ
 //! ```
 //!
-//! D is diagonal and L_kk unit lower, so the factor has the numbers of the scalar factorization. An inverted block
-//! pivot is not used: beside a penalty of 1e8 it loses all its digits. Source: Davis, Algorithm 849, ACM TOMS 31
-//! (2005), with blocks in place of numbers.
+//! D is diagonal and L_kk unit lower triangular, so the factor has the numbers of the scalar factorization. The inverse
+//! of a block pivot is never formed: beside a penalty of 1e8 it loses all its digits. Source: Davis, Algorithm 849, ACM
+//! TOMS 31 (2005), with blocks in place of numbers.
 
 use super::block::{
     Block, backward, divide, forward, ldl, load, plus, product_transposed, store, times, transposed, transposed_times,
@@ -15,7 +15,7 @@ use super::block::{
 };
 use super::{EliminationPlan, Incidence};
 
-/// An entry of the lower triangle of the reordered matrix: its column, and the edge its block comes from.
+/// An entry of the lower triangle of the reordered matrix: its column and the edge that its block comes from.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     column: usize,
@@ -31,7 +31,7 @@ pub(crate) struct BlockLdl {
     order: Vec<usize>,
     a_start: Vec<usize>,
     a_entry: Vec<Entry>,
-    /// The columns of row k of L, ascending, and where in column storage the block goes.
+    /// The columns of row k of L, ascending, and the position of each block in column storage.
     row_start: Vec<usize>,
     row_entry: Vec<(usize, usize)>,
     column_start: Vec<usize>,
@@ -45,7 +45,7 @@ pub(crate) struct BlockLdl {
 }
 
 impl BlockLdl {
-    /// For some of the nodes of a graph, with the edges (first, second) whose block is A_first,second.
+    /// The structure for some of the nodes of a graph. The block of an edge (first, second) is A_first,second.
     pub(crate) fn new(nodes: &[usize], edges: &[(usize, usize)], dimension: usize) -> Self {
         let n = nodes.len();
         let mut local = vec![None; nodes.iter().max().map_or(0, |most| most + 1)];
@@ -55,7 +55,7 @@ impl BlockLdl {
         let find = |node: usize| local.get(node).copied().flatten();
         let inside: Vec<(usize, usize, usize)> =
             edges.iter().enumerate().filter_map(|(edge, &(a, b))| Some((find(a)?, find(b)?, edge))).collect();
-        // A node is an unknown of the incidence, and an edge is a point that two unknowns share.
+        // In the words of `Incidence` a node is an unknown, and an edge is a point that two unknowns share.
         let mut touching: Vec<Vec<u32>> = vec![Vec::new(); n];
         for (shared, &(a, b, _)) in inside.iter().enumerate() {
             touching[a].push(shared as u32);
@@ -127,10 +127,10 @@ impl BlockLdl {
         self.x = vec![0.0; n * dimension];
     }
 
-    /// Factors the matrix with these blocks on the diagonal (one a node) and on the edges; false where a pivot does not
-    /// exceed `LEAST` times its node's floor.
+    /// Factors the matrix with these blocks on the diagonal (one for each node) and on the edges. Returns false if a
+    /// pivot does not exceed `LEAST` times the floor of its node.
     pub(crate) fn factor<const D: usize>(&mut self, diagonal: &[f64], coupling: &[f64], floor: &[f64]) -> bool {
-        /// Of the floor, for a pivot to count as positive.
+        /// Least positive pivot [floors of the node].
         const LEAST: f64 = 1e-3;
         for k in 0..self.order.len() {
             for entry in &self.a_entry[self.a_start[k]..self.a_start[k + 1]] {

@@ -1,14 +1,15 @@
-//! Nested dissection: cut the graph of points in two, eliminate the unknowns of either half, and last the unknowns that
-//! were cut.
+//! Nested dissection: cuts the graph of points into two parts, eliminates the unknowns inside each part, and then the
+//! unknowns that connect the parts.
 //!
-//! Source: George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973); with the cut
-//! unknowns themselves as the separator, since here an unknown is an edge and a point a vertex.
+//! Source: George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973); with the
+//! unknowns that are cut as the separator, since here an unknown is an edge and a point a vertex.
 
 use super::Incidence;
 use super::bisection::{Graph, bisect};
 use super::ordering::minimum_degree;
 
-/// Largest part that is ordered by minimum degree [unknowns]: between 30 and 100, nets took the same time within 3 %.
+/// Largest part that is ordered by minimum degree [unknowns]. The time for nets was the same within 3 % for all limits
+/// between 30 and 100.
 const SMALL: usize = 70;
 
 /// The order of elimination of all unknowns.
@@ -27,15 +28,16 @@ pub(crate) fn nested_dissection(incidence: &Incidence) -> Vec<u32> {
 struct Dissection<'a> {
     incidence: &'a Incidence,
     order: Vec<u32>,
-    /// The number of a point in the part at hand, and `u32::MAX` for every point of other parts, between uses for all.
+    /// The number of each point within the part that is being ordered, `u32::MAX` for points of other parts; between
+    /// uses `u32::MAX` for all points.
     local: Vec<u32>,
-    /// The same for `Incidence::part`.
+    /// Scratch of `Incidence::part`: `u32::MAX` for all points between uses.
     part: Vec<u32>,
     seen: Vec<bool>,
 }
 
 impl Dissection<'_> {
-    /// Orders the unknowns all of whose points are among these.
+    /// Orders `unknowns`, all of whose points are in `points`.
     fn order_part(&mut self, points: Vec<u32>, unknowns: Vec<u32>) {
         if unknowns.len() <= SMALL || points.len() < 4 {
             return self.order_small(&unknowns);
@@ -66,7 +68,8 @@ impl Dissection<'_> {
         self.order.extend(cut);
     }
 
-    /// The points of a part, joined where an unknown touches both; numbers them in `local`.
+    /// The graph of the points of a part: an edge joins two points that an unknown touches. Numbers the points in
+    /// `local`.
     fn graph(&mut self, points: &[u32], unknowns: &[u32]) -> Graph {
         for (k, &p) in points.iter().enumerate() {
             self.local[p as usize] = k as u32;
@@ -98,7 +101,7 @@ impl Dissection<'_> {
         Graph { start, to }
     }
 
-    /// Minimum degree of a part; the unknowns around it, which come later, count as neighbours.
+    /// Orders a part by minimum degree; the unknowns around the part, which are eliminated later, count as neighbours.
     fn order_small(&mut self, unknowns: &[u32]) {
         let mut with_rim = unknowns.to_vec();
         for &u in unknowns {
@@ -123,7 +126,7 @@ impl Dissection<'_> {
     }
 }
 
-/// A part for every vertex: the connected pieces where there are several, else the two sides of a cut.
+/// The part of every vertex: its connected piece if the graph has several pieces, else its side of a cut.
 fn sides(graph: &Graph) -> Vec<u32> {
     let mut piece = vec![u32::MAX; graph.vertices()];
     let mut pieces = 0;

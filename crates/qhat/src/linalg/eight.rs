@@ -1,18 +1,18 @@
 //! Eight numbers that go through the same arithmetic side by side: [`F8`] in memory, [`Wide`] in registers.
 //!
-//! Every operation is that of one f64 and rounds once, so the bits do not depend on how many numbers a vector unit
-//! takes at a time: which one is chosen as the program runs.
+//! Every operation acts on each number as on a single f64 and rounds once. The bits therefore do not depend on the
+//! width of the vector unit, which is chosen when the program runs.
 
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// How many lanes: one register of AVX-512, two of AVX2, four of wasm.
+/// Number of lanes: one register of AVX-512, two of AVX2, four of wasm.
 pub(crate) const LANES: usize = 8;
 
-/// Eight numbers without an alignment: one column of a tile of eight rows.
+/// Eight numbers without an alignment of their own: one column of a tile of eight rows.
 pub(crate) type Eight = [f64; LANES];
 
-/// One number in each lane; a cache line of its own.
+/// One number in each lane, aligned to a cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct F8(pub(crate) Eight);
@@ -24,47 +24,47 @@ impl F8 {
         F8([value; LANES])
     }
 
-    /// Every lane takes the value of the lane before it; the first takes that of the last.
+    /// Moves the value of every lane to the next lane, and the value of the last lane to the first.
     #[inline(always)]
     pub(crate) fn shifted_up(self) -> F8 {
         F8(std::array::from_fn(|k| self.0[(k + LANES - 1) % LANES]))
     }
 
-    /// Every lane takes the value of the lane after it; the last takes that of the first.
+    /// Moves the value of every lane to the lane before it, and the value of the first lane to the last.
     #[inline(always)]
     pub(crate) fn shifted_down(self) -> F8 {
         F8(std::array::from_fn(|k| self.0[(k + 1) % LANES]))
     }
 
-    /// Sum over the lanes, as a fixed tree.
+    /// Sum over the lanes, always in the same order of additions.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.0;
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// max over the lanes; NaN if any is.
+    /// max over the lanes; NaN if any lane is NaN.
     pub(crate) fn largest(self) -> f64 {
         self.0.into_iter().fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most })
     }
 }
 
-/// The widest vector unit of this machine; in the browser the one that the page was built for.
+/// The widest vector unit of this machine; in the browser the vector unit that the page was built for.
 #[inline(always)]
 pub(crate) fn vector_unit() -> Arch {
     Arch::new()
 }
 
-/// Numbers below this size are set to zero where elimination lets them decay from row to row [SI units]. In a chain of
-/// a thousand links they would fall below 1e-308, and processors are a hundred times slower on such numbers. The square
-/// of this limit is still a normal number.
+/// Size below which a number that elimination lets decay from row to row is set to zero [SI units]. In a chain of a
+/// thousand links such numbers would fall below 1e-308, where processors are a hundred times slower. The square of this
+/// limit is still a normal number.
 const NEGLIGIBLE: f64 = 1e-140;
 
 /// Eight numbers in as many registers as the vector unit needs. `S` is that unit.
 #[derive(Clone, Copy)]
 pub(crate) struct Wide<S: Simd> {
     simd: S,
-    /// The first 8/width of them are in use; the rest is never read.
+    /// The first 8/width registers are in use; the others are never read.
     parts: [S::f64s; LANES],
 }
 
@@ -113,7 +113,7 @@ impl<S: Simd> Wide<S> {
         self
     }
 
-    /// The larger of each pair; NaN if either is.
+    /// The larger of each pair; NaN if either number is NaN.
     #[inline(always)]
     pub(crate) fn larger(self, other: Self) -> Self {
         self.zip(
@@ -127,7 +127,7 @@ impl<S: Simd> Wide<S> {
         )
     }
 
-    /// Zero where negligible.
+    /// `self`, with every number below `NEGLIGIBLE` set to zero.
     #[inline(always)]
     pub(crate) fn flushed(mut self) -> Self {
         let simd = self.simd;
@@ -138,7 +138,7 @@ impl<S: Simd> Wide<S> {
         self
     }
 
-    /// `self` where x > limit, which NaN never is; `other` elsewhere.
+    /// `self` where x > limit, else `other`; where x is NaN, `other`.
     #[inline(always)]
     pub(crate) fn where_above(mut self, x: Self, limit: Self, other: Self) -> Self {
         for j in 0..Self::PARTS {
@@ -188,7 +188,7 @@ impl<S: Simd> Neg for Wide<S> {
     }
 }
 
-/// max |x| of a whole array; NaN if any is.
+/// max |x| of a whole array; NaN if any number is NaN.
 pub(crate) struct Largest<'a>(pub(crate) &'a [F8]);
 
 impl WithSimd for Largest<'_> {
@@ -222,7 +222,7 @@ pub(crate) fn minus<S: Simd, const D: usize>(a: [Wide<S>; D], b: [Wide<S>; D]) -
     )
 }
 
-/// a · b, summed from the first component on.
+/// a · b, summed in ascending order of the components.
 #[inline(always)]
 pub(crate) fn dot<S: Simd, const D: usize>(a: [Wide<S>; D], b: [Wide<S>; D]) -> Wide<S> {
     let mut sum = a[0] * b[0];

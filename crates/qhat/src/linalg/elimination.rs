@@ -16,7 +16,7 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// Of the coupling matrix, unknowns in the order of their numbers.
+    /// The elimination of the coupling matrix, with the unknowns eliminated in the order of their numbers.
     pub(crate) fn new(incidence: &Incidence) -> Self {
         let n = incidence.unknowns();
         let (mut parent, mut seen, mut below) = (vec![NONE; n], vec![NONE; n], vec![0; n]);
@@ -49,14 +49,14 @@ impl Elimination {
         self.below.iter().map(|&c| u64::from(c) * (u64::from(c) + 2)).sum()
     }
 
-    /// The unknowns with every subtree in one piece, children before parents.
+    /// The unknowns in an order that keeps every subtree together and puts children before their parents.
     pub(crate) fn postorder(&self) -> Vec<u32> {
         let single = |j: usize| Front { columns: vec![j as u32], below: self.below[j], zeros: 0 };
         let fronts: Vec<Front> = (0..self.parent.len()).map(single).collect();
         postorder(&fronts, &self.parent).0
     }
 
-    /// The unknowns in the order of fronts, and how many columns each front has.
+    /// The unknowns in the order of fronts, and the number of columns of each front.
     pub(crate) fn fronts(&self) -> (Vec<u32>, Vec<u32>) {
         let n = self.parent.len();
         let mut fronts: Vec<Front> = Vec::with_capacity(n);
@@ -66,7 +66,8 @@ impl Elimination {
             let mut front = Front { columns: vec![j as u32], below: self.below[j], zeros: 0 };
             let mut kept = Vec::new();
             let mut sons = std::mem::take(&mut waiting[j]);
-            // The best fitting child comes first: its rows decide whether the others are worth merging.
+            // The child with the most rows below comes first, because its merger costs the fewest stored zeros and the
+            // other mergers depend on it.
             sons.sort_by_key(|&s| (std::cmp::Reverse(fronts[s as usize].below), s));
             for s in sons {
                 match fronts[s as usize].merged(&front) {
@@ -95,7 +96,7 @@ impl Elimination {
     }
 }
 
-/// Columns that are eliminated together, with the entries below them that each then has.
+/// Columns that are eliminated together as one dense block, with the number of rows below them.
 #[derive(Clone, Debug)]
 struct Front {
     columns: Vec<u32>,
@@ -104,7 +105,7 @@ struct Front {
 }
 
 impl Front {
-    /// This front merged with its parent, if the merger is worth the zeros that it stores.
+    /// This front merged with its parent, if the merger is worth the zeros that it has to store.
     fn merged(&self, parent: &Front) -> Option<Front> {
         let (k, up) = (self.columns.len() as u64, parent.columns.len() as u64);
         // The rows of a front lie among the columns and rows of its parent.
@@ -112,7 +113,7 @@ impl Front {
         let columns = k + up;
         let entries = columns * (columns + 1) / 2 + columns * u64::from(parent.below);
         let share = zeros as f64 / entries as f64;
-        // On nets of 32 to 316 a side, half and twice these numbers cost within 5 % of the same.
+        // On nets with 32 to 316 points a side, half and twice these limits take the same time within 5 %.
         let allowed = match columns {
             ..=8 => 0.4,
             9..=16 => 0.2,
@@ -128,7 +129,7 @@ impl Front {
     }
 }
 
-/// The columns of all fronts that have any, subtree after subtree, and how many each front has.
+/// The columns of all fronts that are not empty, subtree after subtree, and the number of columns of each.
 fn postorder(fronts: &[Front], parent: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let (mut first, mut next) = (vec![NONE; fronts.len()], vec![NONE; fronts.len()]);
     let mut roots = Vec::new();

@@ -2,8 +2,8 @@
 //!
 //! A front holds k columns that are eliminated together, and r rows below them. Its part of L is stored in blocks of
 //! eight rows, the columns of a block one after the other; both the k and the r rows begin a block. The Schur
-//! complement that elimination leaves for the rows below (the *update*, r × r) waits on one of two stacks, which
-//! alternate with the depth in the tree, until the parent adds it.
+//! complement that elimination leaves for the rows below (the *update*, r × r) is kept on a stack until the parent adds
+//! it. There are two stacks, which alternate with the depth in the tree.
 
 use super::Lower;
 use super::elimination::NONE;
@@ -12,34 +12,35 @@ use std::ops::Range;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Front {
-    /// Its first column.
+    /// The first column.
     pub(crate) first: usize,
-    /// k.
+    /// k, the number of columns.
     pub(crate) columns: usize,
-    /// Its rows below, in `FrontPlan::rows`.
+    /// The rows below, in `FrontPlan::rows`.
     pub(crate) rows: Range<usize>,
-    /// Its part of L, in columns of eight rows.
+    /// The part of L, in columns of eight rows.
     pub(crate) l: Range<usize>,
-    /// The stack of its update, and its offset there in columns of eight rows.
+    /// The stack of the update, and the offset of the update there in columns of eight rows.
     pub(crate) stack: usize,
     pub(crate) update: Range<usize>,
     pub(crate) children: Range<usize>,
-    /// The entries of A that it takes, in `FrontPlan::entries`.
+    /// The entries of A in these columns, in `FrontPlan::entries`.
     pub(crate) entries: Range<usize>,
 }
 
 impl Front {
-    /// Blocks of the k rows.
+    /// Number of blocks of the k rows.
     pub(crate) fn pivot_blocks(&self) -> usize {
         self.columns.div_ceil(H)
     }
 
-    /// Blocks of the r rows.
+    /// Number of blocks of the r rows.
     pub(crate) fn row_blocks(&self) -> usize {
         self.rows.len().div_ceil(H)
     }
 
-    /// Which number of its L is column 0 of row `place` (the k rows, rounded up to whole blocks, then the others).
+    /// The position of column 0 of row `place` in the front's part of L. The places count the k rows, rounded up to
+    /// whole blocks, and then the r rows.
     #[inline(always)]
     pub(crate) fn row_in_l(&self, place: usize) -> usize {
         place / H * H * self.columns + place % H
@@ -52,9 +53,9 @@ pub(crate) struct FrontPlan {
     pub(crate) range: Range<usize>,
     /// Children before parents.
     pub(crate) fronts: Vec<Front>,
-    /// Rows below, counted from the start of the range.
+    /// The rows below of all fronts, counted from the start of the range.
     pub(crate) rows: Vec<u32>,
-    /// The same as places in the parent's front.
+    /// The places of these rows in the parent's front.
     pub(crate) places: Vec<u32>,
     pub(crate) children: Vec<u32>,
     /// The slot of a value of A, and its position in its front's part of L.
@@ -66,7 +67,7 @@ pub(crate) struct FrontPlan {
 }
 
 impl FrontPlan {
-    /// For rows that are coupled with no row outside, in fronts of these many columns.
+    /// The plan for rows that are coupled with no row outside, in fronts of the given numbers of columns.
     pub(crate) fn new(a: &Lower, range: Range<usize>, widths: &[u32]) -> Self {
         let mut plan = FrontPlan { range: range.clone(), ..FrontPlan::default() };
         let mut front_of = Vec::with_capacity(range.len());
@@ -171,8 +172,8 @@ impl FrontPlan {
         }
     }
 
-    /// Assigns a stack position to each update. The update of a front lies on the other stack than those of its
-    /// children, which are the last entries there.
+    /// Assigns a stack position to each update. The updates of the children of a front are the last entries of one
+    /// stack; the update of the front lies on the other stack.
     fn place_updates(&mut self, parent: &[u32]) {
         for f in (0..self.fronts.len()).rev() {
             if parent[f] != NONE {

@@ -1,23 +1,23 @@
 //! Hubs: points with very many unknowns.
 //!
-//! A point adds B W Bᵀ to the matrix, a clique of all its unknowns. With unknowns of its own, a = W Bᵀ x, it adds only
-//! B:
+//! A point adds B W Bᵀ to the matrix, a clique of all unknowns that touch the point. If a hub gets unknowns of its own,
+//! a = W Bᵀ x, it adds only B:
 //!
 //! ```text
 //! (A′ + B W Bᵀ) x = b   ⇔   [ A′   B  ] [x]   [b]
 //!                           [ Bᵀ −W⁻¹ ] [a] = [0]
 //! ```
 //!
-//! This matrix is quasi-definite: any order of elimination works, with negative pivots for a, as long as A′ is positive
-//! definite. A′ is singular if a piece has more unknowns than the coordinates of its other points; some of these
-//! unknowns are then eliminated after the hub. Source: Vanderbei, Symmetric quasidefinite matrices, SIAM J. Optim. 5
-//! (1995).
+//! This matrix is quasi-definite as long as A′ is positive definite: any order of elimination works, with negative
+//! pivots for a. A′ is singular if a connected piece has more unknowns than its points other than hubs have
+//! coordinates. Some of these unknowns are then eliminated after the hub. Source: Vanderbei, Symmetric quasidefinite
+//! matrices, SIAM J. Optim. 5 (1995).
 
 use super::Incidence;
 use super::plan::{EliminationPlan, HUB_FROM};
 use std::ops::Range;
 
-/// The points that are hubs, and the number of unknowns each then is: the dimension of space.
+/// The points that are hubs, and the number of unknowns that each hub adds: the dimension of space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hubs {
     pub(crate) points: Vec<u32>,
@@ -34,17 +34,17 @@ impl Hubs {
         self.points.is_empty()
     }
 
-    /// How many unknowns the hubs add.
+    /// Number of unknowns that the hubs add.
     pub(crate) fn unknown_count(&self) -> usize {
         self.points.len() * self.width
     }
 
-    /// Which hub a point is.
+    /// The number of the hub at a point; `None` if the point is no hub.
     pub(crate) fn number(&self, point: u32) -> Option<usize> {
         self.points.binary_search(&point).ok()
     }
 
-    /// The unknowns that a hub becomes.
+    /// The unknowns of a hub.
     pub(crate) fn unknowns(&self, incidence: &Incidence, hub: usize) -> Range<u32> {
         let first = incidence.unknowns() + hub * self.width;
         first as u32..(first + self.width) as u32
@@ -76,7 +76,7 @@ impl Hubs {
         Incidence::new(points as usize, lists.into_iter())
     }
 
-    /// The hubs that some unknowns touch, ascending.
+    /// The hubs that any of these unknowns touches, ascending.
     pub(crate) fn among(&self, incidence: &Incidence, unknowns: &[u32]) -> Vec<usize> {
         if self.is_empty() {
             return Vec::new();
@@ -104,8 +104,9 @@ impl Hubs {
         order
     }
 
-    /// Which unknowns come after the hubs: in each piece that is left without hubs, as many of those that touch one as
-    /// there are unknowns beyond `width` for each point.
+    /// Whether each unknown is eliminated after the hubs. A piece that is left when the hubs are removed can hold
+    /// `width` unknowns for each of its points; as many unknowns as exceed this number, chosen among the unknowns that
+    /// touch a hub, come after the hubs.
     fn late(&self, incidence: &Incidence, unknowns: &[u32], rest: &Incidence) -> Vec<bool> {
         let mut late = vec![false; unknowns.len()];
         let mut counted = vec![false; rest.points()];

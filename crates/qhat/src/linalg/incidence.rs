@@ -1,12 +1,13 @@
 //! Incidence of unknowns and points: two unknowns are coupled if they share a point.
 //!
-//! A graph of rods in the words of this folder: a rod is an unknown, a particle a point. It is far smaller than the
-//! pattern of the matrix, where every point becomes a clique.
+//! For a graph of rods, a rod is an unknown and a particle a point. The incidence is far smaller than the pattern of
+//! the matrix, where every point becomes a clique.
 
 #[cfg(test)]
 use super::Pattern;
 
-/// Both directions of "unknown u touches point p", each as one list cut by starts; the lists of points ascend.
+/// The points of every unknown and the unknowns at every point, each as one long list with the start of every part; the
+/// points of an unknown ascend.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Incidence {
     start: Vec<u32>,
@@ -16,7 +17,7 @@ pub(crate) struct Incidence {
 }
 
 impl Incidence {
-    /// From the points of each unknown in turn.
+    /// The incidence of unknowns whose points are given, unknown after unknown.
     pub(crate) fn new<I: IntoIterator<Item = u32>>(points: usize, unknowns: impl Iterator<Item = I>) -> Self {
         let mut incidence = Incidence { start: vec![0], at_start: vec![0; points + 1], ..Incidence::default() };
         for list in unknowns {
@@ -41,7 +42,7 @@ impl Incidence {
         incidence
     }
 
-    /// Every coupling of a pattern becomes a point.
+    /// The incidence of a pattern: every coupling becomes a point.
     #[cfg(test)]
     pub(crate) fn of_pattern(pattern: &Pattern) -> Self {
         let n = pattern.order();
@@ -57,8 +58,8 @@ impl Incidence {
         Incidence::new(points as usize, lists.into_iter())
     }
 
-    /// The part with these unknowns and their points, both numbered anew in the order given; `scratch` is all
-    /// `u32::MAX` before and after, one number a point.
+    /// The part with these unknowns and their points, both numbered anew in the order given. `scratch` has one number
+    /// for each point, all `u32::MAX` before and after.
     pub(crate) fn part(&self, unknowns: &[u32], scratch: &mut [u32]) -> Self {
         let mut points = 0;
         let mut lists = Vec::with_capacity(unknowns.len());
@@ -81,7 +82,7 @@ impl Incidence {
         Incidence::new(points as usize, lists.into_iter())
     }
 
-    /// The same with `order[k]` as unknown k.
+    /// The same incidence with `order[k]` as unknown k.
     pub(crate) fn permuted(&self, order: &[u32]) -> Self {
         Incidence::new(self.points(), order.iter().map(|&u| self.points_of(u).iter().copied()))
     }

@@ -1,7 +1,8 @@
 //! The dense work of a front on tiles of eight rows by four columns.
 //!
-//! Every number is a sum over k in ascending order, each product rounded before it is added: how many numbers a
-//! register holds changes nothing. `pulp` picks the widest registers of the machine at run time.
+//! Every number is a sum over k in ascending order, and each product is rounded before it is added. The results
+//! therefore do not depend on how many numbers a register holds. `pulp` picks the widest registers of the machine at
+//! run time.
 
 use super::eight::{Eight, LANES};
 
@@ -11,7 +12,7 @@ pub(crate) const H: usize = LANES;
 /// Columns of a tile.
 pub(crate) const COLUMNS: usize = 4;
 
-/// Σ_k l[k] w[k]ᵀ, where of the eight columns of w four are taken, from C on.
+/// Σ_k l[k] w[k]ᵀ, for the four columns of w from column C on.
 #[inline(always)]
 pub(crate) fn outer<const C: usize>(l: &[Eight], w: &[Eight]) -> [Eight; COLUMNS] {
     let mut sum = [[0.0; H]; COLUMNS];
@@ -63,7 +64,7 @@ pub(crate) fn scaled(a: &Eight, c: f64) -> Eight {
     a.map(|a| a * c)
 }
 
-/// The sum over lanes, always in this tree.
+/// The sum over the lanes, always in the same order of additions.
 #[inline(always)]
 pub(crate) fn across(x: &Eight) -> f64 {
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))

@@ -33,7 +33,7 @@ use super::block::{
 };
 use crate::number::{dot, norm};
 
-/// No parent, no row, no edge.
+/// Stands for no parent, no row and no edge.
 pub(crate) const NONE: usize = usize::MAX;
 
 /// A pivot across the row must exceed this part of the node's floor. Below it the matrix is about to lose its
@@ -46,36 +46,37 @@ const MENDING: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 /// One unknown block with the edge to its parent, in the order of elimination.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForestEdge {
-    /// Its block.
+    /// The block of the unknown.
     pub(crate) node: usize,
     /// The block of its parent, or [`NONE`].
     pub(crate) parent: usize,
-    /// The edge whose block is H_cp, or [`NONE`].
+    /// The edge to the parent, whose block is H_cp, or [`NONE`].
     pub(crate) edge: usize,
-    /// Its row of G, or [`NONE`].
+    /// The row of G that is eliminated with the block, or [`NONE`].
     pub(crate) row: usize,
-    /// Where the row's numbers on the node and on the parent lie in the rows' storage.
+    /// The positions in `Saddle::rows` of the row's numbers on the node and on the parent.
     pub(crate) own: usize,
     pub(crate) above: usize,
 }
 
 /// The saddle system before it is factored.
 pub(crate) struct Saddle<'a> {
-    /// Diagonal blocks of H; consumed.
+    /// Diagonal blocks of H; overwritten.
     pub(crate) diagonal: &'a mut [f64],
-    /// H_cp, one block an edge.
+    /// H_cp, one block for each edge.
     pub(crate) coupling: &'a [f64],
-    /// The indefinite part of an edge: −B, where B may be added to both ends and taken from the coupling.
+    /// −B for each edge, its indefinite part. `factor` may add B to the diagonal blocks of both ends and subtract it
+    /// from the coupling.
     pub(crate) retreat: &'a [f64],
     /// The floor of each node: the size that its pivots are expected to exceed.
     pub(crate) floor: &'a [f64],
-    /// G's blocks of D numbers.
+    /// The blocks of G, D numbers each.
     pub(crate) rows: &'a [f64],
-    /// E, one number a row.
+    /// E, one number for each row.
     pub(crate) softness: &'a [f64],
 }
 
-/// The factors, one set a link.
+/// The factors, one set for each link.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LeafToRoot {
     pub(crate) links: Vec<ForestEdge>,
@@ -145,7 +146,7 @@ impl LeafToRoot {
                 let Hn = times(&H, n);
                 let THn = T.times(Hn);
                 v = std::array::from_fn(|i| n[i] - THn[i]);
-                // Where compression leaves nothing along a soft row, its softness must not turn the pivot's sign.
+                // Compression can make â negative. The bound keeps γ² + âE of a soft row positive.
                 let a = dot(Hn, v).max(-0.5 * length * length / saddle.softness[link.row]);
                 let E = saddle.softness[link.row];
                 let determinant = length * length + a * E;
@@ -238,7 +239,7 @@ impl<const D: usize> Across<D> {
     }
 }
 
-/// H⁻¹ in factors; `None` where a pivot does not exceed `least`.
+/// H⁻¹ in factors; `None` if a pivot does not exceed `least`.
 #[inline(always)]
 fn factor_whole<const D: usize>(H: &Block<D>, least: f64) -> Option<Across<D>> {
     let factor = ldl(H, least)?;
@@ -246,7 +247,7 @@ fn factor_whole<const D: usize>(H: &Block<D>, least: f64) -> Option<Across<D>> {
     Some(Across { B: transposed(&columns), weight: divide(&factor, [1.0; D]) })
 }
 
-/// Z (ZᵀHZ)⁻¹ Zᵀ in factors, for the D − 1 directions Z across the unit vector n; `None` where a pivot does not exceed
+/// Z (ZᵀHZ)⁻¹ Zᵀ in factors, for the D − 1 directions Z across the unit vector n; `None` if a pivot does not exceed
 /// `least`.
 #[inline(always)]
 fn factor_across<const D: usize>(H: &Block<D>, n: [f64; D], least: f64) -> Option<Across<D>> {

@@ -1,4 +1,5 @@
-//! Symmetric matrices and their LDLᵀ factorization: no physics words, and the only home of speed tricks.
+//! Symmetric matrices and their LDLᵀ factorization. Nothing here refers to physics, and code that is less readable for
+//! the sake of speed stays in this folder.
 //!
 //! Every operation is a plain f64 operation in a fixed order, so native and wasm results agree bit for bit.
 
@@ -39,11 +40,11 @@ use multifrontal::Multifrontal;
 use simplicial::{Simplicial, SimplicialPlan};
 use std::sync::Arc;
 
-/// Order up to which a matrix is factored densely: there the dense factorization is at least as fast as the sparse one
-/// for every pattern.
+/// Largest order of a matrix that is factored densely: up to this order the dense factorization is at least as fast as
+/// the sparse factorization, for every pattern.
 pub(crate) const DENSE_UP_TO: usize = 24;
 
-/// The LDLᵀ factorization of a symmetric positive definite matrix, dense when small, sparse beyond.
+/// The LDLᵀ factorization of a symmetric positive definite matrix, dense up to order [`DENSE_UP_TO`] and sparse beyond.
 #[derive(Clone, Debug)]
 pub(crate) enum Factor {
     Dense(DenseLdl),
@@ -71,8 +72,8 @@ impl Factor {
         }
     }
 
-    /// Factors A + shift·I and returns the smallest pivot. If that pivot is not positive, no factor was made. Unknowns
-    /// of hubs are not shifted, and their pivots, which must be negative, count only if they are not.
+    /// Factors A + shift·I and returns the smallest pivot. If this pivot is not positive, no factor was made. Unknowns
+    /// of hubs are not shifted. Their pivots must be negative, and a pivot of theirs is returned only if it is not.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
         match self {
             Factor::Dense(ldl) => ldl.factor(pattern, values, shift),
@@ -105,7 +106,7 @@ impl Factor {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
     unknowns: usize,
-    /// `order[k]` is the unknown that is eliminated k-th; none where they are numbered so.
+    /// `order[k]` is the unknown that is eliminated k-th; `None` if unknown k is.
     order: Option<Vec<u32>>,
     a: Lower,
     /// Unknowns of hubs, in the order of elimination: their pivots are negative, and no shift is added to them.

@@ -50,7 +50,7 @@ impl Multifrontal {
         self.arch.dispatch(Factorization { ldl: self, plan, negative: &negative[plan.range.clone()], values, shift })
     }
 
-    /// One front, from A and its children's updates to its columns of L and its own update.
+    /// Factors one front: from the entries of A and the updates of its children to its columns of L and its own update.
     #[inline(always)]
     fn eliminate(&mut self, plan: &FrontPlan, front: &Front, negative: &[bool], values: &[f64], shift: f64) -> f64 {
         let negative = &negative[front.first..][..front.columns];
@@ -92,8 +92,8 @@ impl Multifrontal {
     }
 }
 
-/// The work that runs with the widest registers of the machine. It is a type and not a closure, so that all of it is
-/// compiled for these registers.
+/// The factorization as a task for the widest registers of the machine. It is a type and not a closure, so that the
+/// whole task is compiled for these registers.
 struct Factorization<'a> {
     ldl: &'a mut Multifrontal,
     plan: &'a FrontPlan,
@@ -143,7 +143,7 @@ impl NullaryFnOnce for Solve<'_> {
     }
 }
 
-/// Adds a child's update to its parent: rows of the parent's columns into L, the others into its update.
+/// Adds a child's update to its parent: rows of the parent's columns into L, the other rows into the parent's update.
 #[inline(always)]
 fn take(
     plan: &FrontPlan,
@@ -176,14 +176,14 @@ fn take(
     }
 }
 
-/// Eliminates eight columns at a time: the columns before are subtracted from them, then they are eliminated in all
-/// rows.
+/// Eliminates eight columns at a time: first the columns before are subtracted from the eight, then the eight are
+/// eliminated in all rows.
 #[inline(always)]
 fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Eight]) -> f64 {
     let k = d.len();
     let mut smallest = f64::INFINITY;
     for begin in (0..k).step_by(H) {
-        // The blocks of rows from these columns on.
+        // The blocks of rows from the first of these columns on.
         let l = &mut l[begin / H * k..];
         let (before, d) = d.split_at_mut(begin);
         let inverse_d = &mut inverse_d[begin..];
@@ -208,7 +208,7 @@ fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: 
     smallest
 }
 
-/// N columns in all blocks of rows: the first block holds their pivots. w is D Lᵀ of the columns before.
+/// Eliminates N columns in all blocks of rows; the first block holds their pivots. w is D Lᵀ of the columns before.
 #[inline(always)]
 fn factor_tiles<const N: usize>(
     k: usize,
@@ -299,7 +299,7 @@ fn subtract_update(front: &Front, l: &[Eight], d: &[f64], update: &mut [Eight], 
     }
 }
 
-/// x ← L⁻¹ x, the part of one front.
+/// x ← L⁻¹ x, for the columns of one front.
 #[inline(always)]
 fn forward(plan: &FrontPlan, front: &Front, l: &[Eight], x: &mut [f64]) {
     let k = front.columns;
@@ -328,7 +328,7 @@ fn forward(plan: &FrontPlan, front: &Front, l: &[Eight], x: &mut [f64]) {
     }
 }
 
-/// x ← L⁻ᵀ x, the part of one front.
+/// x ← L⁻ᵀ x, for the columns of one front.
 #[inline(always)]
 fn backward(plan: &FrontPlan, front: &Front, l: &[Eight], x: &mut [f64], sums: &mut [Eight]) {
     let k = front.columns;

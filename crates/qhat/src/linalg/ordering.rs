@@ -1,9 +1,9 @@
 //! Minimum degree ordering: eliminate, again and again, the unknown that is coupled to the fewest others.
 //!
-//! Kept as a quotient graph: a point is an *element*, the clique of the unknowns that touch it, and an eliminated
-//! unknown joins the elements it was in to one, so that storage never grows beyond the input. Ties go to the lower
-//! index: the order depends on nothing but the pattern. Source: George and Liu, The evolution of the minimum degree
-//! ordering algorithm, SIAM Review 31 (1989).
+//! The graph is stored as a quotient graph. A point is an *element*, the clique of the unknowns that touch the point.
+//! An eliminated unknown merges its elements into one element, so the storage never grows beyond the input. Ties go to
+//! the lower index, so the order depends on the pattern only. Source: George and Liu, The evolution of the minimum
+//! degree ordering algorithm, SIAM Review 31 (1989).
 
 use super::Incidence;
 use std::collections::BTreeSet;
@@ -20,7 +20,7 @@ pub(crate) fn minimum_degree(incidence: &Incidence, free: usize, mut budget: usi
         let mut clique = graph.eliminate(pivot);
         clique.retain(|&i| (i as usize) < free);
         if clique.len() == queue.len() {
-            // The rest is one clique: every order of it is as good as any other.
+            // The rest is one clique, so all orders of the rest cost the same.
             order.extend(clique);
             break;
         }
@@ -37,12 +37,12 @@ pub(crate) fn minimum_degree(incidence: &Incidence, free: usize, mut budget: usi
 }
 
 struct QuotientGraph {
-    /// Elements that an unknown belongs to.
+    /// The elements that each unknown belongs to.
     elements: Vec<Vec<u32>>,
-    /// The unknowns of an element: the points first, then the elements that pivots left.
+    /// The unknowns of each element. The elements that were points come first, then the elements that pivots left.
     members: Vec<Vec<u32>>,
     points: usize,
-    /// `mark[i] == stamp` says that i was seen in the present sweep.
+    /// `mark[i] == stamp` means that i was visited in the present sweep.
     mark: Vec<usize>,
     stamp: usize,
     looked_at: usize,

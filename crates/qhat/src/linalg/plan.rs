@@ -1,5 +1,5 @@
-//! The plan of a factorization, made once from the couplings: connected components, their orders of elimination, their
-//! methods.
+//! The plan of a factorization, made once from the couplings: the connected components, the order of elimination of
+//! each, and the method of each.
 
 use super::Incidence;
 use super::dissection::nested_dissection;
@@ -23,9 +23,9 @@ pub enum ComponentKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FactorMethod {
-    /// The whole matrix as a dense one, in the order given.
+    /// The whole matrix as a dense matrix, in the order given.
     Dense,
-    /// Sparse, entry by entry.
+    /// Sparse, entry after entry.
     Simplicial,
     /// Sparse, in dense blocks.
     Multifrontal,
@@ -53,14 +53,14 @@ impl FactorMethod {
     }
 }
 
-/// One connected component of the matrix and what its factorization costs.
+/// One connected component of the matrix, with the method and the cost of its factorization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Component {
     /// Shape of its graph.
     pub kind: ComponentKind,
     /// Number of rows of A.
     pub rows: usize,
-    /// Hubs: points with so many rows that their accelerations stay in the matrix as unknowns.
+    /// Number of hubs: points with so many rows that their accelerations stay in the matrix as unknowns.
     pub hubs: usize,
     /// How it is factored.
     pub method: FactorMethod,
@@ -74,12 +74,14 @@ pub struct Component {
     pub memory: u64,
 }
 
-/// Unknowns from which on a point becomes a hub: eliminated into A it would couple each of them with every other. A
-/// star of 30 spokes takes 3.6 µs with the clique and 1.3 µs with the hub; below, matrices are mostly dense and small.
+/// Least number of unknowns at a point that makes it a hub. A point that is eliminated into A couples all its unknowns
+/// with each other. A star of 30 spokes takes 3.6 µs with this clique and 1.3 µs with a hub; matrices with fewer
+/// unknowns at each point are mostly small and factored densely.
 pub(crate) const HUB_FROM: usize = 32;
 
-/// Operations for each entry of L from which on the multifrontal method is chosen: a net of 10 × 10 (9) is as fast
-/// either way, a net of 32 × 32 (21) takes 0.14 instead of 0.24 ms, a truss (4) would take 1.6 times as long.
+/// Least number of operations for each entry of L with which the multifrontal method is chosen. A net of 10 × 10 (9
+/// operations) is as fast either way, a net of 32 × 32 (21) takes 0.14 ms in place of 0.24 ms, and a truss (4) would
+/// take 1.6 times as long.
 const BLOCKED_FROM: u64 = 12;
 
 /// The order of elimination: first the unknowns that are factored entry by entry, then those that are factored in
@@ -87,12 +89,12 @@ const BLOCKED_FROM: u64 = 12;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EliminationPlan {
     pub(crate) order: Vec<u32>,
-    /// How many unknowns come before the first front.
+    /// Number of unknowns before the first front.
     pub(crate) simplicial: usize,
     /// Columns of each front.
     pub(crate) widths: Vec<u32>,
     pub(crate) components: Vec<Component>,
-    /// The unknown that each component was found from.
+    /// The unknown from which each component was found.
     pub(crate) found_from: Vec<u32>,
 }
 
@@ -101,7 +103,7 @@ impl EliminationPlan {
         EliminationPlan::with_hubs(incidence, &Hubs::default())
     }
 
-    /// The plan for the unknowns and those of the hubs, which are numbered after them.
+    /// The plan for all unknowns. The unknowns of the hubs are numbered after the others.
     pub(crate) fn with_hubs(incidence: &Incidence, hubs: &Hubs) -> Self {
         let mut plan = EliminationPlan::default();
         let mut blocked = Vec::new();
@@ -156,7 +158,7 @@ impl EliminationPlan {
 }
 
 impl Component {
-    /// The same where the whole matrix is small enough to be factored densely.
+    /// This component in a matrix that is small enough to be factored densely as a whole.
     pub(crate) fn dense(self) -> Self {
         let n = self.rows as u64;
         Component {
@@ -171,8 +173,8 @@ impl Component {
     }
 }
 
-/// Memory of numbers and indices of L [bytes]; fronts add stored zeros and the updates that wait: about twice the
-/// largest.
+/// Memory of the numbers and indices of L [bytes]. Fronts add stored zeros and the updates on the stacks, about twice
+/// the largest update.
 fn memory(method: FactorMethod, elimination: &Elimination) -> u64 {
     let largest = u64::from(elimination.below.iter().copied().max().unwrap_or(0));
     match method {
@@ -192,14 +194,15 @@ fn order(part: &Incidence, kind: ComponentKind) -> (Vec<u32>, Elimination) {
         return analysed(leaves_first(part));
     }
     let dissected = analysed(nested_dissection(part));
-    // Minimum degree is better and quick on long thin graphs; on large nets it is neither.
+    // On long thin graphs minimum degree has less fill than dissection and is quick; on large nets it has more and is
+    // slow.
     match minimum_degree(part, n, 100 * n + 200_000).map(analysed) {
         Some(other) if other.1.factor_flops() < dissected.1.factor_flops() => other,
         _ => dissected,
     }
 }
 
-/// The connected components, each with its unknowns; in a path or a tree the last is at an end.
+/// The connected components, each with its unknowns; the last unknown of a path or a tree is at an end of it.
 pub(crate) fn components(incidence: &Incidence) -> Vec<(ComponentKind, Vec<u32>)> {
     let mut components = Vec::new();
     let mut seen = vec![false; incidence.unknowns()];
@@ -246,7 +249,7 @@ fn leaves_first(tree: &Incidence) -> Vec<u32> {
     let mut seen = vec![false; tree.unknowns()];
     let mut seen_point = vec![false; tree.points()];
     let mut order = Vec::with_capacity(tree.unknowns());
-    // Depth first: subtrees stay in one piece. Each point is entered once, so this is linear whatever its degree.
+    // Depth first, so that subtrees stay together. Each point is entered once, so the time is linear for any degree.
     let mut stack = vec![root];
     seen[root as usize] = true;
     while let Some(u) = stack.pop() {

@@ -5,8 +5,8 @@
 /// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is
 /// consumed.
 pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
-    // Pivots of a matrix with unit diagonal lie in [0, 1]; what elimination leaves of a zero is about n times roundoff,
-    // amplified by the conditioning of the rows already taken, for which three digits are allowed.
+    // Pivots of a matrix with unit diagonal lie in [0, 1]. A pivot that is zero in exact arithmetic comes out at about
+    // n times roundoff, amplified by the conditioning of the rows already taken; three digits are allowed for that.
     let tolerance = 1e3 * f64::EPSILON * (n.max(1) as f64);
     let mut active: Vec<usize> = (0..n).collect();
     let mut rank = 0;
@@ -29,10 +29,10 @@ pub(crate) fn rank(n: usize, mut matrix: Vec<f64>) -> usize {
     rank
 }
 
-/// Rank of the sparse matrix of a pattern, with the unknowns that `is_eliminated` names taken out of it first and a
-/// diagonal of one for the rows that `is_active` names, of zero for the others.
+/// Rank of the sparse matrix of a pattern. The unknowns for which `is_eliminated` holds are eliminated first. The
+/// diagonal is one in the rows for which `is_active` holds and zero in the others.
 ///
-/// An eliminated unknown h has −1 on its diagonal, so eliminating it adds the outer product of its column.
+/// An eliminated unknown h has −1 on its diagonal, so its elimination adds the outer product of its column.
 pub(crate) fn rank_of(
     pattern: &super::Pattern,
     values: &[f64],

@@ -21,7 +21,7 @@ pub(crate) struct SimplicialPlan {
 }
 
 impl SimplicialPlan {
-    /// For rows that are coupled with no row outside.
+    /// The plan for rows that are coupled with no row outside.
     pub(crate) fn new(a: &Lower, rows: Range<usize>) -> Self {
         let (n, first) = (rows.len(), rows.start);
         let (mut parent, mut seen) = (vec![NONE; n], vec![NONE; n]);

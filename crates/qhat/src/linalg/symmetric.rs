@@ -1,8 +1,9 @@
-//! Symmetric sparse matrices: the lower triangle by rows, each row's columns ascending, its diagonal last.
+//! Symmetric sparse matrices. The lower triangle is stored by rows, each with its columns ascending and its diagonal
+//! last.
 
 use super::Incidence;
 
-/// Which entries of the lower triangle may be nonzero. Every diagonal entry is present.
+/// The entries of the lower triangle that may be nonzero. Every diagonal entry is present.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Pattern {
     pub(crate) start: Vec<usize>,
@@ -10,7 +11,7 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
-    /// From the columns of each row; the diagonal and the order are seen to here.
+    /// The pattern with these columns in each row; adds the diagonal and sorts.
     #[cfg(test)]
     pub(crate) fn from_rows(rows: Vec<Vec<usize>>) -> Self {
         let mut pattern = Pattern { start: vec![0], column: Vec::new() };
@@ -48,7 +49,7 @@ impl Pattern {
         self.column.len()
     }
 
-    /// Where entry (i, j), j ≤ i, is stored.
+    /// The index at which entry (i, j), j ≤ i, is stored.
     pub(crate) fn slot(&self, i: usize, j: usize) -> Option<usize> {
         let row = &self.column[self.start[i]..self.start[i + 1]];
         row.binary_search(&j).ok().map(|k| self.start[i] + k)
@@ -110,7 +111,7 @@ impl SymmetricMatrix {
         self.pattern.slot(row, column).map_or(0.0, |slot| self.values[slot])
     }
 
-    /// The whole matrix, row after row: for looking at, and for tests.
+    /// The whole matrix, row after row, zeros included: for display and for tests.
     pub fn to_dense(&self) -> Vec<f64> {
         let m = self.order();
         let mut dense = vec![0.0; m * m];
@@ -130,7 +131,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// The lower triangle of P A Pᵀ by rows: the columns of each and the slots of A their values come from.
+/// The lower triangle of P A Pᵀ by rows: the columns of each row and the slots of A that their values come from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lower {
     start: Vec<usize>,
@@ -138,7 +139,7 @@ pub(crate) struct Lower {
 }
 
 impl Lower {
-    /// `order[k]` is the unknown that is eliminated k-th; without one, as they are numbered.
+    /// `order[k]` is the unknown that is eliminated k-th; without an order, unknown k is.
     pub(crate) fn new(pattern: &Pattern, order: Option<&[u32]>) -> Self {
         let n = pattern.order();
         let mut place: Vec<u32> = (0..n as u32).collect();

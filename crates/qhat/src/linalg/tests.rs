@@ -1,4 +1,4 @@
-//! The factorizations against each other, against their own residuals, and against matrices whose answer is known.
+//! Compares the factorizations with each other, with their residuals, and with matrices whose answer is known.
 
 use super::bisection::{Graph, bisect};
 use super::dissection::nested_dissection;
@@ -10,8 +10,8 @@ use super::{
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
-/// A symmetric matrix with dominant diagonal, so positive definite, with the couplings given as pairs; values from a
-/// seed.
+/// A symmetric matrix with the given pairs as couplings and values from a seed. Its diagonal dominates, so the matrix
+/// is positive definite.
 fn matrix(n: usize, pairs: &[(usize, usize)], seed: u64) -> (Pattern, Vec<f64>) {
     let mut rows = vec![Vec::new(); n];
     for &(i, j) in pairs {
@@ -58,8 +58,9 @@ fn net(k: usize) -> Incidence {
     Incidence::new(k * k, edges)
 }
 
-/// Elimination in a given order by the textbook, where the neighbours of what goes become a clique: how many couplings
-/// that adds, and at each step the number of neighbours of what went beside the least there was.
+/// The textbook's elimination in a given order, where the neighbours of an eliminated unknown become a clique. Returns
+/// the number of couplings added, and for each step the number of neighbours of the eliminated unknown with the least
+/// number of neighbours at that step.
 fn eliminate(pattern: &Pattern, order: &[usize]) -> (usize, Vec<(usize, usize)>) {
     let mut neighbours = vec![BTreeSet::new(); pattern.order()];
     for i in 0..pattern.order() {
@@ -139,7 +140,7 @@ proptest! {
         prop_assert_eq!(order, (0..pattern.order() as u32).collect::<Vec<_>>());
     }
 
-    /// What is foretold of L is what the textbook finds, for every order of elimination.
+    /// The symbolic elimination predicts the same L as the textbook, for every order of elimination.
     #[test]
     fn entries_are_foretold((pattern, _) in any_matrix()) {
         let incidence = Incidence::of_pattern(&pattern);
@@ -153,7 +154,7 @@ proptest! {
         prop_assert_eq!(entries, elimination.entries());
     }
 
-    /// The same in fronts, whatever the couplings, with the simplicial factor as the reference.
+    /// The multifrontal factor of a matrix with any couplings agrees with the simplicial factor.
     #[test]
     fn fronts_solve_like_single_columns((pattern, values) in any_matrix(), shift in 0.0_f64..1.0) {
         let incidence = Incidence::of_pattern(&pattern);
@@ -171,7 +172,7 @@ proptest! {
             (pivot, x)
         };
         let (one, other) = (solve(&blocked), solve(&single));
-        // As above.
+        // The bounds are those of the test above.
         prop_assert!((one.0 - other.0).abs() < 1e-13 * one.0, "{} {}", one.0, other.0);
         for i in 0..n {
             prop_assert!((one.1[i] - other.1[i]).abs() < 1e-12, "x[{i}]: {} and {}", one.1[i], other.1[i]);
@@ -196,7 +197,7 @@ proptest! {
         prop_assert!(residual(&pattern, &values, shift, &y, &b) < 1e-13);
     }
 
-    /// A second factorization, also after one that failed, knows nothing of the first.
+    /// A second factorization does not depend on the first, even if the first failed.
     #[test]
     fn factors_can_be_made_again((pattern, values) in any_matrix(), spoil in 0_usize..70) {
         let mut bad = values.clone();

@@ -1,25 +1,25 @@
 //! The plan of chains: the lane and the block of every particle, found once when a System is built.
 //!
 //! A system qualifies if every constraint is a rod in the length form or a nail, and if its rods, cut at fixed and
-//! nailed particles, form open chains (a free particle is a chain without links). Chains of similar length are placed
-//! side by side, one in each lane; a long chain alone is cut into eight stretches. A group of eight lanes with S rows
-//! has S + 1 blocks of particles: block i of a lane is the particle at the end of its row i, block 0 the particle at
-//! which its first row begins.
+//! nailed particles, form open chains (a free particle is a chain without links). Up to eight chains of similar length
+//! are placed side by side, each in a lane of its own; a single long chain is cut into eight stretches. A group of
+//! eight lanes with S rows has S + 1 blocks of particles: block i of a lane is the particle at the end of its row i,
+//! block 0 the particle at which its first row begins.
 
 use crate::constraint::{Constraint, DistanceForm, NailForm, NamedConstraint};
 use crate::linalg::eight::{F8, LANES};
 use std::ops::Range;
 
-/// Fewest links of a chain that is cut. On a shorter chain the coupling of the stretches costs more than the lanes
-/// save.
+/// Least number of links of a chain that is cut into stretches. On a shorter chain the coupling of the stretches costs
+/// more than the lanes save.
 const WORTH_CUTTING: usize = 16;
 
 /// Eight lanes with the same number of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Group {
-    /// The block of its lanes' first particles.
+    /// The block with the first particle of every lane.
     pub(crate) first: usize,
-    /// S.
+    /// S, the number of rows of each lane.
     pub(crate) rows: usize,
     /// Whether any lane continues another.
     pub(crate) is_coupled: bool,
@@ -28,13 +28,13 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// Its blocks.
+    /// The blocks of the group.
     #[inline(always)]
     pub(crate) fn blocks(&self) -> Range<usize> {
         self.first..self.first + self.rows + 1
     }
 
-    /// Its range in arrays of D numbers a block.
+    /// The range of the group in arrays with D entries for each block.
     #[inline(always)]
     pub(crate) fn coordinates<const D: usize>(&self) -> Range<usize> {
         self.first * D..(self.first + self.rows + 1) * D
@@ -60,7 +60,8 @@ pub(crate) struct ChainSlot {
     pub(crate) lane: usize,
 }
 
-/// The lanes of a whole system. Arrays have one entry a block; those of rows belong to the row that ends at the block.
+/// The lanes of a whole system. Arrays have one entry for each block. An entry of an array of rows belongs to the row
+/// that ends at the block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ChainPlan {
     pub(crate) groups: Vec<Group>,
@@ -74,31 +75,32 @@ pub(crate) struct ChainPlan {
     pub(crate) inverse_r: Vec<F8>,
     /// 1 for a rod, 0 in padding, whose particles may drift anywhere.
     pub(crate) rod: Vec<F8>,
-    /// 1 in padding, 0 for a rod: keeps pivots off zero.
+    /// 1 in padding, 0 for a rod; added to the diagonal, so that no pivot in padding is zero.
     pub(crate) padding: Vec<F8>,
     /// The slot of each moving particle.
     pub(crate) homes: Vec<ChainSlot>,
-    /// All other slots: fixed or nailed particles at the ends of chains, heads that copy a tail, padding.
+    /// All other slots: fixed or nailed particles at the ends of chains, first particles of stretches (copies of the
+    /// last particle of the stretch before), padding.
     pub(crate) copies: Vec<ChainSlot>,
     /// Particles held by nails, with their points.
     pub(crate) nailed: Vec<(usize, [f64; 3])>,
 }
 
-/// An open chain: its particles in order, one more than its rods.
+/// An open chain: its particles in order and the lengths of the rods between them.
 struct Chain {
     particles: Vec<usize>,
     lengths: Vec<f64>,
 }
 
 impl ChainPlan {
-    /// `None` if the system does not consist of open chains.
+    /// The plan of a system; `None` if the system does not consist of open chains.
     pub(crate) fn new(constraints: &[NamedConstraint], inverse_mass: &[f64]) -> Option<ChainPlan> {
         let mut plan = ChainPlan::default();
         let mut is_held: Vec<bool> = inverse_mass.iter().map(|&w| w == 0.0).collect();
         for named in constraints {
             if let Constraint::Nail(nail) = &named.constraint {
                 // A second nail, or a nail in a fixed particle, is redundant or a contradiction: the general path
-                // judges it.
+                // decides which of the two.
                 if nail.form != NailForm::Vector || is_held[nail.particle.0] {
                     return None;
                 }
@@ -129,7 +131,7 @@ impl ChainPlan {
         self.w.len()
     }
 
-    /// Groups with their own part of each array.
+    /// The groups, each with its part of every array.
     #[inline(always)]
     pub(crate) fn stretches<'a>(&'a self, groups: &'a [Group]) -> impl Iterator<Item = Stretch<'a>> {
         groups.iter().map(
@@ -181,7 +183,7 @@ impl ChainPlan {
         self.padding.resize(end, F8::splat(1.0));
         let mut follows = F8::ZERO;
         for lane in 0..LANES {
-            // An empty lane is padded with a fixed copy of the first.
+            // An empty lane is padded with fixed copies of the first particle of the group.
             let (particles, lengths) = stretches.get(lane).copied().unwrap_or((&stretches[0].0[..1], &[]));
             let is_empty = lane >= stretches.len();
             if is_coupled && lane > 0 && !is_empty {
@@ -225,7 +227,7 @@ fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain
             return None;
         };
         if rod.compliance > 0.0 {
-            // A compliant rod is a spring and no row.
+            // A compliant rod acts as a spring and has no row.
             continue;
         }
         if rod.form != DistanceForm::Length || rod.breaks_at.is_some() || (is_held[rod.a.0] && is_held[rod.b.0]) {

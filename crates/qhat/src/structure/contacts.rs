@@ -3,7 +3,7 @@
 use crate::constraint::{Holds, NamedConstraint};
 use std::ops::Range;
 
-/// A row that opens and closes, with its rows of friction.
+/// A contact: a row that opens and closes, with its rows of friction.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Contact {
     /// The index of its constraint.
@@ -13,13 +13,13 @@ pub(crate) struct Contact {
     pub(crate) tangents: Range<usize>,
     /// e, the part of the closing speed that an impact gives back.
     pub(crate) restitution: f64,
-    /// μ.
+    /// μ, the coefficient of friction.
     pub(crate) friction: f64,
-    /// Its index among the breakable constraints.
+    /// Its index among the breakable constraints, if it is breakable.
     pub(crate) breakable: Option<usize>,
 }
 
-/// A constraint that breaks.
+/// A constraint that breaks under tension.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Breakable {
     /// The index of its constraint.

@@ -13,25 +13,27 @@ use std::sync::Arc;
 /// The structure of A: its pattern, the contributions to each entry, and the plan of its factorization.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MatrixStructure {
-    /// In the order of elimination.
+    /// The pattern of A, its unknowns in the order of elimination.
     pub(crate) pattern: Pattern,
-    /// `order[k]` is the row that is eliminated k-th, or one of a hub's unknowns, which are numbered after the rows.
+    /// `order[k]` is the number of the row or of the unknown of a hub that is eliminated k-th; unknowns of hubs are
+    /// numbered after the rows.
     pub(crate) order: Vec<u32>,
     pub(crate) on_hubs: Vec<OnHub>,
-    /// For each particle in turn that can move: its blocks of J, and then the slots that their pairs are added to.
+    /// For each particle that can move: its blocks of J and the slots to which the products of their pairs are added.
     pub(crate) meeting: Vec<Meeting>,
     pub(crate) blocks: Vec<u32>,
     pub(crate) slots: Vec<u32>,
-    /// Rows all of whose particles are fixed, and compliant rows, which act as forces: their row of A is always zero.
+    /// Rows whose row of A is always zero: rows all of whose particles are fixed, and compliant rows, which act as
+    /// forces.
     pub(crate) inert: Vec<bool>,
     pub(crate) symbolic: Arc<Symbolic>,
     pub(crate) components: Vec<Component>,
 }
 
-/// One number of B.
+/// One entry of B.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnHub {
-    /// The index of its row in the order of elimination.
+    /// The position of its row in the order of elimination.
     pub(crate) row: u32,
     pub(crate) slot: u32,
     /// The index of its number in J.
@@ -90,7 +92,7 @@ impl MatrixStructure {
     pub(crate) fn new(layout: &Layout, W: &[f64], planned: MatrixPlan) -> Self {
         let MatrixPlan { incidence, hubs, plan, inert, components } = planned;
         let m = layout.row_count();
-        // A small matrix is factored densely, in the order given.
+        // A small matrix is factored densely, in the order of its rows.
         let order = if m <= DENSE_UP_TO { (0..m as u32).collect() } else { plan.order.clone() };
         let permuted = hubs.extended(&incidence).permuted(&order);
         let pattern = Pattern::of_incidence(&permuted);
@@ -135,12 +137,13 @@ impl MatrixStructure {
         }
     }
 
-    /// Finds the slots of all pairs of rows at each particle, particles in the order in which elimination touches them.
+    /// Finds the slots of all pairs of rows at each particle. The particles come in the order in which elimination
+    /// touches them.
     fn meet(&mut self, layout: &Layout, particles: usize, incidence: &Incidence) {
         let mut seen = vec![false; particles];
         for first in 0..self.order.len() as u32 {
             for &p in incidence.points_of(first) {
-                // A point beyond the particles is one that unknowns share with a hub.
+                // A point beyond the particles belongs to a hub; its unknowns share it.
                 if p as usize >= particles || std::mem::replace(&mut seen[p as usize], true) {
                     continue;
                 }

@@ -40,8 +40,8 @@ pub(crate) struct Case {
     at: &'static [(usize, [f64; 3])],
     /// The constraints, driven by `Clock::s` where they can be.
     make: fn(&Clock) -> Vec<Constraint>,
-    /// The residuals of the twin. S is what makes the first of them zero at the start, and `drive` more; where no text
-    /// has an S, it is `drive` alone.
+    /// The residuals of the twin. S makes a residual zero at the start, and then follows `drive`. The kind has the S of
+    /// the last residual; where none has an S, it is `drive` alone.
     twin: &'static [&'static str],
     /// A function of t, 0 at the start.
     drive: &'static str,
@@ -52,6 +52,8 @@ pub(crate) struct Case {
     pub(crate) turns: bool,
     /// Whether it holds C = 0 over a motion, in two ways that can be compared.
     pub(crate) moves: bool,
+    /// Whether it acts on one side only. Away from a run its rows are inactive, and terms show nothing of them.
+    pub(crate) one_sided: bool,
 }
 
 pub(crate) const fn driven(
@@ -63,7 +65,7 @@ pub(crate) const fn driven(
     drive: &'static str,
 ) -> Case {
     let tried = Tried::Nearby;
-    Case { name, d, at, make, twin, drive, tried, same_rows: true, turns: false, moves: true }
+    Case { name, d, at, make, twin, drive, tried, same_rows: true, turns: false, moves: true, one_sided: false }
 }
 
 /// A case that nothing drives, but for what its own expressions of t do.
@@ -98,20 +100,30 @@ impl Case {
         Case { moves: false, ..self }
     }
 
+    pub(crate) const fn one_sided(self) -> Case {
+        Case { moves: false, one_sided: true, ..self }
+    }
+
     /// q at the start.
     pub(crate) fn positions(&self) -> Vec<f64> {
         let place = |i: usize| self.at.iter().find(|(moved, _)| *moved == i).map_or(PLACES[i], |(_, place)| *place);
         (0..PLACES.len()).flat_map(|i| place(i)[..self.d].to_vec()).collect()
     }
 
-    /// The clock `later` seconds after the start.
-    fn clock(&self, later: f64) -> Clock {
-        let q = self.positions();
-        let start = self.twin.iter().filter(|text| text.contains('S')).last().map_or(0.0, |text| {
+    /// The clock of a row of the twin, `later` seconds after the start.
+    fn clock_of(&self, text: &str, later: f64) -> Clock {
+        let mut start = 0.0;
+        if text.contains('S') {
+            let q = self.positions();
             let typed = ExpressionConstraint::new(parse(&text.replace('S', "0"), Purpose::Constraint, self.d), &q);
-            Constraint::from(typed).residual(dimension(self.d), &q)[0]
-        });
+            start = Constraint::from(typed).residual(dimension(self.d), &q)[0];
+        }
         Clock { start, drive: self.drive, later, d: self.d }
+    }
+
+    /// The clock of the kind: that of the last row which has an S.
+    fn clock(&self, later: f64) -> Clock {
+        self.clock_of(self.twin.iter().rev().find(|text| text.contains('S')).unwrap_or(&""), later)
     }
 
     /// The constraints as they are `later` seconds after the start.
@@ -121,8 +133,8 @@ impl Case {
 
     /// The expressions of the twin.
     pub(crate) fn typed(&self) -> Vec<Expression> {
-        let s = self.clock(0.0).text("S");
-        self.twin.iter().map(|text| parse(&text.replace('S', &s), Purpose::Constraint, self.d)).collect()
+        let row = |text: &&str| parse(&self.clock_of(text, 0.0).text(text), Purpose::Constraint, self.d);
+        self.twin.iter().map(row).collect()
     }
 
     /// Whether time changes the constraints.

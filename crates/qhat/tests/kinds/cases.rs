@@ -3,10 +3,52 @@
 
 use super::case::{Case, Clock, P, PLACES, driven, mass, parse, twin};
 use qhat::{
-    Anchor, Angle, Area, Constraint, Curve, Dimension, Direction, Distance, DistanceForm, Driven, Gears, Lengths,
-    Limits, Line, Nail, NailForm, Obstacle, OnCircle, OnCurve, OnLine, OnPlane, OnSphere, Plane, Purpose, Relation,
-    Surface, Volume, rigid_rods,
+    Anchor, Angle, Area, Constraint, Curve, Custom, Dimension, Direction, Distance, DistanceForm, Driven, Gears, Hyper,
+    Lengths, Limits, Line, Nail, NailForm, Obstacle, OnCircle, OnCurve, OnEllipse, OnLine, OnPlane, OnSphere, Plane,
+    Purpose, Relation, Surface, Volume, rigid_rods,
 };
+
+/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test
+/// fails where a kind is missing: name a new kind here, then add its cases.
+macro_rules! kinds {
+    ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
+        /// Name, dimensions, and whether it is an equality.
+        pub(super) const KINDS: &[(&str, &[usize], bool)] =
+            &[$($((stringify!($equality), &$dimensions, true),)* $((stringify!($other), &$dimensions, false),)*)*];
+
+        /// A name that is only in the list does not compile; a kind that the list lacks fails.
+        #[test]
+        fn the_list_names_every_kind_of_the_engine() {
+            fn kind(constraint: &Constraint) -> &'static str {
+                match constraint {
+                    $($(Constraint::$equality(_) => stringify!($equality),)*)*
+                    $($(Constraint::$other(_) => stringify!($other),)*)*
+                    _ => "",
+                }
+            }
+            let nail = Constraint::from(Nail::new(P[0], [0.0; 3]));
+            assert_eq!(kind(&nail), nail.kind());
+            let listed = |name: &&str| KINDS.iter().any(|(listed, ..)| listed == name);
+            let missing: Vec<_> = Constraint::KINDS.iter().filter(|name| !listed(name)).collect();
+            assert!(missing.is_empty(), "{missing:?} are kinds of the engine: name them in `kinds!`, then add their cases");
+        }
+    };
+}
+
+kinds! {
+    in [2, 3];
+    equality Distance Nail Relation Lengths Angle Direction OnLine OnSphere OnCurve ExpressionConstraint
+        Custom;
+    other Limits Obstacle;
+
+    in [2];
+    equality Gears Area OnEllipse;
+    other;
+
+    in [3];
+    equality Volume OnPlane OnCircle;
+    other;
+}
 
 const PUSH: &str = "0.1*sin(2*t)^2";
 
@@ -253,6 +295,26 @@ pub(crate) const CASES: &[Case] = &[
         &["dot([1, 2, 2], p1 - p0)", "dist(p0, p1) - S"],
     )
     .other_rows(),
+    twin(
+        "ellipse",
+        2,
+        &[(1, [0.6, 0.8, 0.0])],
+        |t| {
+            let center = Anchor::Point([t.of("sin(t)/2"), 0.0.into(), 0.0.into()]);
+            let half = [t.of("1 + 0.1*sin(2*t)^2"), t.of("0.7 + 0.2*sin(t)^2")];
+            vec![OnEllipse { particle: P[1], center, along: [3.0, 4.0, 0.0], half }.into()]
+        },
+        &["sqrt((1 + 0.1*sin(2*t)^2)*(0.7 + 0.2*sin(t)^2))\
+           *(length([(0.6*(p1.x - sin(t)/2) + 0.8*p1.y)/(1 + 0.1*sin(2*t)^2), \
+           (0.6*p1.y - 0.8*(p1.x - sin(t)/2))/(0.7 + 0.2*sin(t)^2)]) - 1)"],
+    ),
+    twin(
+        "ellipse about a particle",
+        2,
+        &[(1, [0.8, 0.0, 0.0])],
+        |_| vec![OnEllipse::new(P[1], P[0], [1.0, 0.0, 0.0], [0.8, 0.5]).into()],
+        &["sqrt(0.8*0.5)*(length([(p1.x - p0.x)/0.8, (p1.y - p0.y)/0.5]) - 1)"],
+    ),
     twin("circle as a curve", 2, &[], |_| vec![on_curve(&["cos(s)", "sin(s)"])], &["dot(p1, p1) - 1"]).other_rows(),
     twin("parabola", 2, &[(1, [0.4, 0.08, 0.0])], |_| vec![on_curve(&["s", "s^2/2"])], &["p1.y - p1.x^2/2"])
         .other_rows(),
@@ -556,24 +618,46 @@ pub(crate) const CASES: &[Case] = &[
     driven("expression", 2, &[], |t| vec![t.row("length(p1 - p2) - S")], &["dist(p1, p2) - S"], PUSH).anywhere(),
     twin("expression in space", 3, &[], |t| vec![t.row("length(p1 - p2) - S")], &["dist(p1, p2) - S"]).anywhere(),
     twin(
+        "custom",
+        2,
+        &[],
+        |_| {
+            let apart = |x: &[[Hyper; 3]], _: Hyper| (x[1][0] - x[0][0]).hypot(x[1][1] - x[0][1]) - libm::sqrt(1.85);
+            vec![Custom::new([P[1], P[2]], apart).into()]
+        },
+        &["dist(p1, p2) - sqrt(1.85)"],
+    )
+    .anywhere(),
+    twin(
+        "custom in space",
+        3,
+        &[],
+        |_| {
+            let square = |x: &[[Hyper; 3]], _: Hyper| (0..3).map(|k| (x[1][k] - x[0][k]).powi(2)).sum::<Hyper>() - 1.94;
+            vec![Custom::new([P[1], P[2]], square).into()]
+        },
+        &["dot(p2 - p1, p2 - p1) - 1.94"],
+    )
+    .anywhere(),
+    twin(
         "rope and strut",
         2,
         &[],
         |_| vec![Limits::between(P[0], P[1], 0.5, 1.2).into()],
         &["1.2 - dist(p0, p1)", "dist(p0, p1) - 0.5"],
     )
-    .without_motion()
+    .one_sided()
     .anywhere(),
     twin("rope in space", 3, &[], |_| vec![Limits::rope(P[1], P[0], 1.2).into()], &["1.2 - dist(p0, p1)"])
-        .without_motion()
+        .one_sided()
         .anywhere(),
-    twin("slope", 2, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).without_motion().anywhere(),
-    twin("slope in space", 3, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).without_motion().anywhere(),
-    twin("outside of a circle", 2, &[], |_| vec![ball(false)], &["dist(p1, [0.3, -0.4]) - 0.5"]).without_motion(),
-    twin("inside of a ball", 3, &[], |_| vec![ball(true)], &["0.5 - dist(p1, [0.3, -0.4, 0.1])"]).without_motion(),
+    twin("slope", 2, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).one_sided().anywhere(),
+    twin("slope in space", 3, &[], |_| vec![half_space()], &["0.6*p1.x + 0.8*p1.y + 1.5"]).one_sided().anywhere(),
+    twin("outside of a circle", 2, &[], |_| vec![ball(false)], &["dist(p1, [0.3, -0.4]) - 0.5"]).one_sided(),
+    twin("inside of a ball", 3, &[], |_| vec![ball(true)], &["0.5 - dist(p1, [0.3, -0.4, 0.1])"]).one_sided(),
     // Off its corner, whose radius is a thousandth of 0.5 m.
     twin("corner of a box", 2, &[], |_| vec![corner_of_a_box()], &["length(p1 - [0.2995, -0.4005]) - 0.0005"])
-        .without_motion(),
+        .one_sided(),
     twin(
         "corner of a box in space",
         3,
@@ -581,7 +665,7 @@ pub(crate) const CASES: &[Case] = &[
         |_| vec![corner_of_a_box()],
         &["length(p1 - [0.2995, -0.4005, -0.2005]) - 0.0005"],
     )
-    .without_motion(),
+    .one_sided(),
 ];
 
 /// Back and forth between p0 and p1, once with half the weight.

@@ -33,7 +33,7 @@ fn along(q: &[f64], v: &[f64], tau: f64) -> Vec<f64> {
 
 #[test]
 fn every_kind_agrees_with_differences() {
-    for case in CASES {
+    for case in CASES.iter().filter(|case| !case.one_sided) {
         let tolerance = if case.turns { TURNS_TOLERANCE } else { TOLERANCE };
         let at = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| case.system(LATER + k * DELTA));
         for (q, v) in case.states(&mut Random::new(5), STATES) {

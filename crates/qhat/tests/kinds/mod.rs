@@ -10,50 +10,8 @@ mod refused;
 mod rows;
 mod singular;
 
-use qhat::Constraint;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test
-/// fails where a kind is missing: name a new one here, then add its cases.
-macro_rules! kinds {
-    ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
-        /// Name, dimensions, and whether it is an equality.
-        const KINDS: &[(&str, &[usize], bool)] =
-            &[$($((stringify!($equality), &$dimensions, true),)* $((stringify!($other), &$dimensions, false),)*)*];
-
-        /// A kind that is only in the list does not compile, a kind that the list lacks fails.
-        #[test]
-        fn the_list_names_every_kind_of_the_engine() {
-            fn kind(constraint: &Constraint) -> &'static str {
-                match constraint {
-                    $($(Constraint::$equality(_) => stringify!($equality),)*)*
-                    $($(Constraint::$other(_) => stringify!($other),)*)*
-                    _ => "",
-                }
-            }
-            let nail = Constraint::from(qhat::Nail::new(crate::systems::id(0), [0.0; 3]));
-            assert_eq!(kind(&nail), nail.kind());
-            let listed = |name: &&str| KINDS.iter().any(|(listed, ..)| listed == name);
-            let missing: Vec<_> = Constraint::KINDS.iter().filter(|name| !listed(name)).collect();
-            assert!(missing.is_empty(), "name {missing:?} in `kinds!`, then add their cases");
-        }
-    };
-}
-
-kinds! {
-    in [2, 3];
-    equality Distance Nail Relation Lengths Angle Direction OnLine OnSphere OnCurve ExpressionConstraint;
-    other Limits Obstacle Custom;
-
-    in [2];
-    equality Gears Area;
-    other;
-
-    in [3];
-    equality Volume OnPlane OnCircle;
-    other;
-}
 
 /// The kinds whose fields hold a number or a point that time may change, as the source of the engine declares them.
 fn can_be_driven() -> BTreeSet<String> {

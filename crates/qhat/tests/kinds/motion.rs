@@ -47,7 +47,7 @@ fn run(case: &Case, integrator: Integrator, h: f64) -> (f64, f64) {
 }
 
 #[test]
-fn every_kind_is_held_and_its_energy_accounted_for() {
+fn long_every_kind_is_held_and_its_energy_accounted_for() {
     for case in CASES.iter().filter(|case| case.moves) {
         // What projections leave, and ten times that.
         let held = |integrator: Integrator, worst: f64| {
@@ -209,7 +209,7 @@ fn mechanisms() -> Vec<(&'static str, (System, State))> {
 /// C within the tolerance asked for, relative to its scale, and the balance of energy to what the order leaves, over a
 /// second.
 #[test]
-fn mechanisms_hold_and_account_for_their_energy() {
+fn long_mechanisms_hold_and_account_for_their_energy() {
     // Of the largest kinetic energy: dop853 keeps 1e-9 a substep, and the spline, whose third derivative jumps, a
     // little less. RATTLE and BDF2 are of second order: (ω h)² with ω of 5/s and h = 1 ms or ½ ms is 3e-5 and less.
     for (integrator, h, energy) in
