@@ -30,7 +30,7 @@ macro_rules! kinds {
             assert_eq!(kind(&nail), nail.kind());
             let listed = |name: &&str| KINDS.iter().any(|(listed, ..)| listed == name);
             let missing: Vec<_> = Constraint::KINDS.iter().filter(|name| !listed(name)).collect();
-            assert!(missing.is_empty(), "{missing:?} are kinds of the engine: name them in `kinds!`, then add their cases");
+            assert!(missing.is_empty(), "name {missing:?} in `kinds!`, then add their cases");
         }
     };
 }
