@@ -61,7 +61,7 @@ pub(super) struct Foot<N, const D: usize> {
 }
 
 impl Curve {
-    /// The curve x(s), y(s) and in space z(s) [m] for s between two numbers: expressions for
+    /// The curve x(s), y(s) and in space z(s) \[m\] for s between two numbers: expressions for
     /// [`Purpose::Curve`](crate::Purpose::Curve). Beyond its ends the curve goes on by the same expressions.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ impl Curve {
         Curve::new(CurveForm::Expressions(components), from, to)
     }
 
-    /// The cubic spline through points [m], closed or open; z = 0 in two dimensions. An open spline goes on straight
+    /// The cubic spline through points \[m\], closed or open; z = 0 in two dimensions. An open spline goes on straight
     /// beyond its ends.
     ///
     /// # Errors
@@ -91,8 +91,8 @@ impl Curve {
         Curve::new(CurveForm::Spline(spline), 0.0, end)
     }
 
-    /// Straight pieces from point to point [m], closed or open, with arcs of a radius [m] at the corners; z = 0 in two
-    /// dimensions. The parameter is the arc length [m]. An open polyline goes on straight beyond its ends.
+    /// Straight pieces from point to point \[m\], closed or open, with arcs of a radius \[m\] at the corners; z = 0 in
+    /// two dimensions. The parameter is the arc length \[m\]. An open polyline goes on straight beyond its ends.
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
@@ -127,12 +127,12 @@ impl Curve {
         [self.shape.from, self.shape.to]
     }
 
-    /// The point at a parameter [m]; z = 0 in two dimensions.
+    /// The point at a parameter \[m\]; z = 0 in two dimensions.
     pub fn point(&self, s: f64) -> [f64; 3] {
         self.shape.at::<3>(s).map(|[c, _, _]| c)
     }
 
-    /// The corners of a polygon that approximates the curve [m], from end to end, for drawing. The polygon has the
+    /// The corners of a polygon that approximates the curve \[m\], from end to end, for drawing. The polygon has the
     /// given number of pieces of equal parameter. For a polyline it has the straight pieces, and the arcs in pieces of
     /// 5°.
     pub fn drawn(&self, pieces: usize) -> Vec<[f64; 3]> {

@@ -46,10 +46,10 @@ use crate::stiffness::Stiffness;
 /// The function of the distance that is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DistanceForm {
-    /// C = |d| − r [m].
+    /// C = |d| − r \[m\].
     #[default]
     Length,
-    /// C = d·d − r² [m²], the form of the source.
+    /// C = d·d − r² \[m²\], the form of the source.
     Squared,
 }
 
@@ -60,7 +60,7 @@ pub struct Distance {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub length: f64,
     /// The function that is held at zero.
     pub form: DistanceForm,
@@ -68,18 +68,18 @@ pub struct Distance {
     pub compliance: f64,
     /// c [N·s/m], not negative: a damper parallel to the compliance. It has no effect on a rigid rod.
     pub damping: f64,
-    /// The tension or thrust at which the rod breaks [N].
+    /// The tension or thrust at which the rod breaks \[N\].
     pub breaks_at: Option<f64>,
 }
 
 impl Distance {
-    /// A rod of the given length [m] in the length form.
+    /// A rod of the given length \[m\] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
         Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
     }
 
-    /// A rod whose length is driven [m], a number or a function of t: an [`OnSphere`] about the particle `b`. It is no
-    /// link; its tension is minus its reaction.
+    /// A rod whose length is driven \[m\], a number or a function of t: an [`OnSphere`] about the particle `b`. It is
+    /// no link; its tension is minus its reaction.
     ///
     /// ```
     /// use qhat::{Dimension, Distance, Driven, Particle, System};
@@ -92,7 +92,7 @@ impl Distance {
         OnSphere::new(a, b, length)
     }
 
-    /// The same rod, with the tension or thrust at which it breaks [N].
+    /// The same rod, with the tension or thrust at which it breaks \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Distance { breaks_at: Some(tension), ..self }
     }

@@ -46,8 +46,8 @@ struct Start {
 }
 
 impl ExpressionConstraint {
-    /// A constraint that holds an expression at zero. `positions` has the positions of all particles at the start [m],
-    /// d·n numbers. The scale of the row is measured at these positions and t = 0.
+    /// A constraint that holds an expression at zero. `positions` has the positions of all particles at the start
+    /// \[m\], d·n numbers. The scale of the row is measured at these positions and t = 0.
     pub fn new(expression: Expression, positions: &[f64]) -> Self {
         let d = expression.dimension();
         // The builder rejects a particle that does not exist.
@@ -60,7 +60,7 @@ impl ExpressionConstraint {
         ExpressionConstraint { expression, start, scale: None }
     }
 
-    /// The same constraint with a given scale [C], above 0: the |C| that counts as a relative error of one.
+    /// The same constraint with a given scale \[C\], above 0: the |C| that counts as a relative error of one.
     pub fn with_scale(self, scale: f64) -> Self {
         ExpressionConstraint { scale: Some(scale), ..self }
     }

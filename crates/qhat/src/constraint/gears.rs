@@ -54,7 +54,7 @@ pub struct Gears {
 }
 
 impl Gears {
-    /// Two wheels that mesh at α [rad]. Each wheel is an arm from its centre to one of its points, with its number of
+    /// Two wheels that mesh at α \[rad\]. Each wheel is an arm from its centre to one of its points, with its number of
     /// teeth. One of the numbers is negative if one wheel lies inside the other or a belt connects the wheels.
     pub fn mesh(wheels: [[ParticleId; 2]; 2], teeth: [i32; 2], angle: impl Into<Driven>) -> Self {
         let [[c1, _], [c2, _]] = wheels;
@@ -66,14 +66,14 @@ impl Gears {
         Gears::coupled(if centres.1 == 0 { &arms[..2] } else { &arms }, angle)
     }
 
-    /// Σ z φ = α [rad] up to whole turns, over arms whose angles φ count from the x axis: wheels with fixed centres.
+    /// Σ z φ = α \[rad\] up to whole turns, over arms whose angles φ count from the x axis: wheels with fixed centres.
     pub fn coupled(arms: &[([ParticleId; 2], i32)], angle: impl Into<Driven>) -> Self {
         let (ends, parts): (Vec<_>, Vec<_>) = arms.iter().map(|&(ends, z)| (ends, Part::Turn(z))).unzip();
         Gears { arms: Arms::new(ends), parts, angle: angle.into() }
     }
 
-    /// A pinion and a rack. The pinion is an arm from its centre to one of its points, has the given radius [m], and is
-    /// to the left of the direction of the rack, which may have any length. `rack` is a point of the rack.
+    /// A pinion and a rack. The pinion is an arm from its centre to one of its points, has the given radius \[m\], and
+    /// is to the left of the direction of the rack, which may have any length. `rack` is a point of the rack.
     pub fn rack(
         pinion: [ParticleId; 2],
         rack: ParticleId,

@@ -30,13 +30,13 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Σ w |d| = L [m] over segments from one particle to another, each with its weight.
+    /// Σ w |d| = L \[m\] over segments from one particle to another, each with its weight.
     pub fn new(segments: &[([ParticleId; 2], f64)], total: impl Into<Driven>) -> Self {
         let (ends, weights): (Vec<_>, Vec<_>) = segments.iter().copied().unzip();
         Lengths { segments: Arms::new(ends), weights, total: total.into() }
     }
 
-    /// A rope of length L [m] over points, in order. A point that the rope passes several times is named each time.
+    /// A rope of length L \[m\] over points, in order. A point that the rope passes several times is named each time.
     pub fn pulley(points: &[ParticleId], total: impl Into<Driven>) -> Self {
         let segments: Vec<_> = points.windows(2).map(|pair| ([pair[0], pair[1]], 1.0)).collect();
         Lengths::new(&segments, total)

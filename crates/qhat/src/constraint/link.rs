@@ -24,9 +24,9 @@ pub struct Link<'a> {
     pub a: ParticleId,
     /// The other end.
     pub b: ParticleId,
-    /// The least distance of the ends [m]; `None` for a rope.
+    /// The least distance of the ends \[m\]; `None` for a rope.
     pub shortest: Option<f64>,
-    /// The largest distance of the ends [m]; `None` for a loose strut. For a rod both distances are its length.
+    /// The largest distance of the ends \[m\]; `None` for a loose strut. For a rod both distances are its length.
     pub longest: Option<f64>,
     /// The rows of the constraint in C, λ and J. With two limits, the row of the longest comes first.
     pub rows: Range<usize>,

@@ -158,7 +158,7 @@ impl Constraint {
         if let Constraint::Distance(rod) = self { Some(rod) } else { None }
     }
 
-    /// C at t = 0 with the particles at q [m], flat, d numbers each. For a constraint made with the
+    /// C at t = 0 with the particles at q \[m\], flat, d numbers each. For a constraint made with the
     /// target 0, this is the target (length, angle, area) that the given positions satisfy.
     ///
     /// # Panics

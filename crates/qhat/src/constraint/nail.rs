@@ -26,10 +26,10 @@ use crate::stiffness::Stiffness;
 /// The function of x − p that is held at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NailForm {
-    /// C = x − p [m], d rows.
+    /// C = x − p \[m\], d rows.
     #[default]
     Vector,
-    /// C = |x − p|² [m²], one row, the form of the source.
+    /// C = |x − p|² \[m²\], one row, the form of the source.
     Scalar,
 }
 
@@ -38,19 +38,19 @@ pub enum NailForm {
 pub struct Nail {
     /// The particle that is held.
     pub particle: ParticleId,
-    /// p [m]; the third component is ignored in two dimensions.
+    /// p \[m\]; the third component is ignored in two dimensions.
     pub at: [f64; 3],
     /// The function that is held at zero.
     pub form: NailForm,
 }
 
 impl Nail {
-    /// A nail at p [m] in the vector form.
+    /// A nail at p \[m\] in the vector form.
     pub fn new(particle: ParticleId, at: impl Into<Vector>) -> Self {
         Nail { particle, at: at.into().0, form: NailForm::Vector }
     }
 
-    /// A nail that moves: a [`Relation`] of the particle to the point p(t) [m], each component a number or a function
+    /// A nail that moves: a [`Relation`] of the particle to the point p(t) \[m\], each component a number or a function
     /// of t; the third is ignored in two dimensions.
     ///
     /// ```

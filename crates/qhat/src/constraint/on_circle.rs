@@ -28,12 +28,12 @@ pub struct OnCircle {
     pub center: Anchor,
     /// The axis, at right angles to the circle, of any length.
     pub axis: [f64; 3],
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnCircle {
-    /// A particle on a circle of a radius [m] about a centre, at right angles to an axis.
+    /// A particle on a circle of a radius \[m\] about a centre, at right angles to an axis.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, axis: [f64; 3], radius: impl Into<Driven>) -> Self {
         OnCircle { particle, center: center.into(), axis, radius: radius.into() }
     }

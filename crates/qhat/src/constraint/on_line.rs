@@ -20,7 +20,7 @@ use crate::space::ParticleId;
 /// The line that a particle is on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Line {
-    /// Through p(t) [m] along u(t), of any length.
+    /// Through p(t) \[m\] along u(t), of any length.
     Through(DrivenPoint, DrivenPoint),
     /// Through two particles.
     Particles(ParticleId, ParticleId),
@@ -36,7 +36,7 @@ pub struct OnLine {
 }
 
 impl OnLine {
-    /// A particle on a fixed line, through a point [m] along a direction.
+    /// A particle on a fixed line, through a point \[m\] along a direction.
     pub fn fixed(particle: ParticleId, point: [f64; 3], along: [f64; 3]) -> Self {
         OnLine { particle, line: Line::Through(still(point), still(along)) }
     }

@@ -20,7 +20,7 @@ use crate::space::ParticleId;
 /// The plane that a particle is on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Plane {
-    /// Through p(t) [m] at right angles to n(t), of any length.
+    /// Through p(t) \[m\] at right angles to n(t), of any length.
     Across(DrivenPoint, DrivenPoint),
     /// Through three particles.
     Particles([ParticleId; 3]),
@@ -36,7 +36,7 @@ pub struct OnPlane {
 }
 
 impl OnPlane {
-    /// A particle on a fixed plane, through a point [m] at right angles to a normal.
+    /// A particle on a fixed plane, through a point \[m\] at right angles to a normal.
     pub fn fixed(particle: ParticleId, point: [f64; 3], normal: [f64; 3]) -> Self {
         OnPlane { particle, plane: Plane::Across(still(point), still(normal)) }
     }

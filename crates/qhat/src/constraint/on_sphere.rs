@@ -26,12 +26,12 @@ pub struct OnSphere {
     pub particle: ParticleId,
     /// The centre.
     pub center: Anchor,
-    /// r [m], positive.
+    /// r \[m\], positive.
     pub radius: Driven,
 }
 
 impl OnSphere {
-    /// A particle at a distance [m] from a centre.
+    /// A particle at a distance \[m\] from a centre.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
         OnSphere { particle, center: center.into(), radius: radius.into() }
     }

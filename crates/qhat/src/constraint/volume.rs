@@ -32,7 +32,7 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// A closed surface of triangles that encloses V [m³].
+    /// A closed surface of triangles that encloses V \[m³\].
     pub fn new(triangles: &[[ParticleId; 3]], volume: impl Into<Driven>) -> Self {
         let mut particles: Vec<ParticleId> = triangles.iter().flatten().copied().collect();
         particles.sort_unstable();
@@ -53,7 +53,7 @@ impl Volume {
         self.faces.iter().map(|corners| corners.map(|corner| self.particles[corner]))
     }
 
-    /// A tetrahedron with (b − a)·((c − a) × (d − a))/6 = V [m³].
+    /// A tetrahedron with (b − a)·((c − a) × (d − a))/6 = V \[m³\].
     pub fn tetrahedron([a, b, c, d]: [ParticleId; 4], volume: impl Into<Driven>) -> Self {
         Volume::new(&[[a, c, b], [a, b, d], [a, d, c], [b, c, d]], volume)
     }

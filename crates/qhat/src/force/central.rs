@@ -13,16 +13,17 @@ use crate::stiffness::Stiffness;
 pub struct CentralForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// p [m]; the third component is ignored in two dimensions.
+    /// p \[m\]; the third component is ignored in two dimensions.
     pub center: [f64; 3],
     /// s [N·m²]; −μ m for gravity. A negative s attracts.
     pub strength: f64,
-    /// ε, the softening length [m], not negative.
+    /// ε, the softening length \[m\], not negative.
     pub softening: f64,
 }
 
 impl CentralForce {
-    /// Gravity of a particle of the given mass [kg] towards a point [m]; μ = G M in m³/s², the softening length in m.
+    /// Gravity of a particle of the given mass \[kg\] towards a point \[m\]; μ = G M in m³/s², the softening length in
+    /// m.
     pub fn gravity(particle: ParticleId, mass: f64, center: [f64; 3], mu: f64, softening: f64) -> Self {
         CentralForce { particle, center, strength: -mu * mass, softening }
     }

@@ -33,14 +33,14 @@ use crate::stiffness::Stiffness;
 pub struct ExpressionForce {
     /// The particle it acts on.
     pub particle: ParticleId,
-    /// The d components of F [N].
+    /// The d components of F \[N\].
     pub components: Vec<Expression>,
 }
 
 /// A potential energy V as an expression. The force on every particle in V is −∂V/∂x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpressionPotential {
-    /// V [J].
+    /// V \[J\].
     pub potential: Expression,
 }
 

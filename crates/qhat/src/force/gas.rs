@@ -40,9 +40,9 @@ pub struct Gas {
 }
 
 impl Gas {
-    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ. A₀ is its area or volume at positions q [m],
-    /// flat, d numbers for each particle. Edges must go round counter-clockwise, and triangles counter-clockwise as
-    /// seen from outside. A particle without a position in q makes A₀ NaN, which the builder of the system rejects.
+    /// A gas of pressure p₀ [N/m in a loop, Pa in a mesh] and exponent γ. A₀ is its area or volume at positions q
+    /// \[m\], flat, d numbers for each particle. Edges must go round counter-clockwise, and triangles counter-clockwise
+    /// as seen from outside. A particle without a position in q makes A₀ NaN, which the builder of the system rejects.
     pub fn new(facets: Vec<Facet>, pressure: f64, exponent: f64, dimension: Dimension, q: &[f64]) -> Self {
         let mut particles: Vec<ParticleId> = Vec::new();
         let mut corners = Vec::with_capacity(facets.len());
