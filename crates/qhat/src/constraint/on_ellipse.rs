@@ -29,12 +29,12 @@ pub struct OnEllipse {
     pub center: Anchor,
     /// u, the direction of the first axis, of any length; the third component is ignored.
     pub along: [f64; 3],
-    /// a along u and b across it [m], positive.
+    /// a along u and b across it \[m\], positive.
     pub half: [Driven; 2],
 }
 
 impl OnEllipse {
-    /// On an ellipse about a centre, with its first axis in a direction and half axes [m] along and across it.
+    /// On an ellipse about a centre, with its first axis in a direction and half axes \[m\] along and across it.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, along: [f64; 3], half: [impl Into<Driven>; 2]) -> Self {
         OnEllipse { particle, center: center.into(), along, half: half.map(Into::into) }
     }

@@ -23,8 +23,8 @@ pub(crate) trait Acts {
     /// The arguments that the force depends on between two changes of its numbers.
     fn dependence(&self) -> Dependence;
 
-    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for an implicit method, in which q̇ changes with q at
-    /// `rate` [1/s]. A force may couple only particles that `particles` names.
+    /// Calls `visit(i, j, block)` with −∂Q/∂q − rate ∂Q/∂q̇ [N/m], for an implicit method, in which q̇ changes with q
+    /// at `rate` [1/s]. A force may couple only particles that `particles` names.
     fn tangent<const D: usize>(
         &self,
         motion: Motion<'_, D>,
