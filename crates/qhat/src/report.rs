@@ -235,9 +235,9 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::Singular => f.write_str(
-                "some constraints repeat what others say, so A = J W Jᵀ is singular: the motion and the total force are \
-                 unique, the single multipliers are not, and the smallest that do it are shown. `qhat check` counts the \
-                 redundant rows",
+                "some constraints repeat what others say, so A = J W Jᵀ is singular: the motion and the total force \
+                 are unique, the single multipliers are not, and the smallest that do it are shown. `qhat check` \
+                 counts the redundant rows",
             ),
             Warning::NoGradient { rows } => write!(
                 f,
@@ -247,8 +247,8 @@ impl fmt::Display for Warning {
             ),
             Warning::TooStiff { substeps } => write!(
                 f,
-                "the motion is too stiff for the {substeps} substeps that frame_work and max_substeps allow a frame, so \
-                 bdf2 carries it: rods hold, fast oscillations are damped. Raise frame_work to follow them"
+                "the motion is too stiff for the {substeps} substeps that frame_work and max_substeps allow a frame, \
+                 so bdf2 carries it: rods hold, fast oscillations are damped. Raise frame_work to follow them"
             ),
             Warning::HandedOver { time } => write!(
                 f,
@@ -257,8 +257,8 @@ impl fmt::Display for Warning {
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,
-                "the frame budget was spent at t = {time:.4} s after {iterations} Newton iterations, and `{row}` is off \
-                 by {relative:.1e} of its size: raise frame_budget, or shorten h"
+                "the frame budget was spent at t = {time:.4} s after {iterations} Newton iterations, and `{row}` is \
+                 off by {relative:.1e} of its size: raise frame_budget, or shorten h"
             ),
         }
     }
