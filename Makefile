@@ -9,6 +9,12 @@ MAKEFLAGS += --no-builtin-rules --no-print-directory
 unexport MAKEFLAGS MFLAGS
 .PHONY: help play build page test tests check format lint docs fuzz bench clean FORCE
 
+# The pinned Rust, or the default one where rustup cannot fetch the pinned one.
+TOOLCHAIN := $(shell scripts/toolchain)
+ifneq ($(TOOLCHAIN),)
+export RUSTUP_TOOLCHAIN := $(TOOLCHAIN)
+endif
+
 # The command is always compiled with its page, so that no target causes another to compile again.
 WORKSPACE := --workspace --features qhat-cli/page
 COMMAND := target/release/qhat
