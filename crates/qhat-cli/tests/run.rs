@@ -156,7 +156,8 @@ fn summary_has_what_scripts_need() {
 fn options_replace_the_settings_of_the_scene() {
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);
     let run = |options: &[&str]| folder.qhat(&[&["run", "bob.toml", "--json"], options].concat()).well().json();
-    let substeps = |tolerance: &str| run(&["--tolerance", tolerance])["substeps"].as_u64().unwrap();
+    // Frames of 0.25 s, because one substep covers a frame of 0.01 s at every tolerance.
+    let substeps = |tolerance: &str| run(&["--h", "0.25", "--tolerance", tolerance])["substeps"].as_u64().unwrap();
     // DOP853 is of order 8, so that 1e-12 takes far more substeps of this swing than the largest tolerances do.
     assert!(substeps("1e-12") > substeps("1e-2"), "{} substeps, {}", substeps("1e-12"), substeps("1e-2"));
     let backward = run(&["--integrator", "backward-euler"]);

@@ -80,6 +80,7 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .with("max_residual", report.max_residual)
         .with("max_residual_rate", report.max_residual_rate)
         .with("max_relative_length_error", report.max_relative_length_error)
+        .with("max_tension", report.max_tension.map_or(JsValue::NULL, max_tension))
         .with("energy", energy(&report.energy))
         .with("integrator", report.integrator.name())
         .with("solver", report.solver.to_string())
@@ -87,6 +88,11 @@ pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
         .with("too_stiff", too_stiff.map_or(JsValue::NULL, |warning| warning.to_string().into()))
         .with("warnings", strings(warnings))
         .finish()
+}
+
+fn max_tension(largest: qhat::MaxTension) -> JsValue {
+    let record = Record::new().with("tension", largest.tension).with("constraint", largest.link.index() as f64);
+    record.with("time", largest.time).finish()
 }
 
 /// An event: its kind, its constraint and its time; for an impact also the closing speed.

@@ -182,6 +182,8 @@ export interface StepReport {
   max_residual: number;
   max_residual_rate: number;
   max_relative_length_error: number;
+  /** the largest tension (positive) or thrust, N, with its constraint and time, s; null if it is not recorded */
+  max_tension: { tension: number; constraint: number; time: number } | null;
   energy: Energy;
   /** the integrator of this step; with auto, the integrator that auto chose */
   integrator: IntegratorName;

@@ -45,7 +45,7 @@ fn same_as(text: &str, positions: &[f64]) -> Constraint {
 }
 
 fn settings(integrator: Integrator) -> Settings {
-    Settings { integrator, tolerance: 1e-8, ..Settings::default() }
+    Settings { integrator, tolerance: 1e-8, constraint_tolerance: 1e-13, ..Settings::default() }
 }
 
 /// A bead on a spiral, and a bob at the end of a rod that begins at the bead and whose length is driven.
@@ -89,7 +89,7 @@ fn a_custom_constraint_moves_as_the_same_expression() {
     // The derivatives agree to roundoff. Each method solves to its own tolerance, and rattle and implicit stop their
     // iterations when the residual is below it. The scales of the rows differ, so the results differ by more than
     // roundoff.
-    for (integrator, good) in [(Integrator::Dop853, 1e-12), (Integrator::Rattle, 1e-12), (Integrator::Implicit, 1e-12)]
+    for (integrator, good) in [(Integrator::Dop853, 1e-12), (Integrator::Rattle, 1e-12), (Integrator::Implicit, 1e-10)]
     {
         let (own, simulation) = run(custom(), integrator, 300);
         let (text, twin) = run(typed(), integrator, 300);
@@ -149,7 +149,7 @@ fn a_custom_potential_may_depend_on_time() {
     println!("{apart:e}");
     assert!(apart < 1e-11, "{apart:e} m apart after 3 s");
     assert!(simulation.energy_error_max() < 1e-6, "{}", simulation.energy_error_max());
-    let work = [&simulation, &twin].map(|simulation| simulation.state().work().external);
+    let work = [&simulation, &twin].map(|simulation| simulation.state().work().total());
     assert!(work[0].abs() > 1e-3 && (work[0] - work[1]).abs() < 1e-9, "{work:?}");
 }
 

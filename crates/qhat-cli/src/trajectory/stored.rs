@@ -36,18 +36,22 @@ impl<'a> Stored<'a> {
 
     /// The numbers of one frame of an array, of which there must be so many.
     pub(crate) fn numbers(&mut self, array: &str, frame: u64, count: usize) -> Result<Vec<f64>, Failure> {
-        self.read(array, frame, count).map_err(|error| self.fault(array, &error))
+        let frames = self.frames()?;
+        self.read(array, (frame, frames), count).map_err(|error| self.fault(array, &error))
     }
 
-    fn read(&mut self, array: &str, frame: u64, count: usize) -> io::Result<Vec<f64>> {
+    fn read(&mut self, array: &str, (frame, frames): (u64, u64), count: usize) -> io::Result<Vec<f64>> {
         let wrong = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
         let (header, mut member) = self.header(array)?;
-        let [frames, row @ ..] = header.shape() else { return Err(wrong("it has no frames".into())) };
+        let [own, row @ ..] = header.shape() else { return Err(wrong("it has no frames".into())) };
         let width = row.iter().try_fold(1u64, |product, &length| product.checked_mul(length));
         if width != Some(count as u64) || header.order() != Order::C {
             return Err(wrong(format!("a frame of it has the shape {row:?}, and the scene needs {count} numbers")));
         }
-        if frame >= *frames {
+        if *own != frames {
+            return Err(wrong(format!("it has {own} frames, and `t` has {frames}")));
+        }
+        if frame >= frames {
             return Err(wrong(format!("it has {frames} frames")));
         }
         let skip = frame.checked_mul(8 * count as u64).ok_or_else(|| wrong("it is too large".into()))?;

@@ -1,9 +1,10 @@
 //! Expressions: C(q, t), a component of a force, a potential or a function of time as text, with exact derivatives.
 //!
 //! ```
-//! use qhat::{Dimension, Expression, ParticleId, Purpose, Scope};
+//! use qhat::{Dimension, Expression, Particle, Purpose, Scope, System};
 //!
-//! let particle = |name: &str| (name == "bob").then_some(ParticleId(0));
+//! let bob = System::builder(Dimension::Two).particle(Particle::at("bob", [1.0, 0.0]));
+//! let particle = |name: &str| (name == "bob").then_some(bob);
 //! let scope = Scope::new(Purpose::Constraint, Dimension::Two, &particle);
 //! let circle = Expression::parse("bob.x^2 + bob.y^2 - (1 + sin(3*t)/10)^2", &scope)?;
 //!

@@ -29,7 +29,7 @@ fn lengths_angles_gears_areas_and_volumes_that_cannot_be() {
     refuse(2, Angle::from_direction([0.0; 3], [P[1], P[2]], 1.0).into(), "needs a length");
     refuse(2, Gears::mesh([[P[0], P[1]], [P[0], P[2]]], [2, 3], 0.0).into(), "two centres");
     refuse(2, Gears::mesh([[P[0], P[1]], [P[2], P[3]]], [0, 3], 0.0).into(), "without teeth");
-    refuse(2, Gears::mesh([[P[0], P[1]], [P[2], P[3]]], [i32::MIN, i32::MAX], 0.0).into(), "1000 at most");
+    refuse(2, Gears::mesh([[P[0], P[1]], [P[2], P[3]]], [i32::MIN, i32::MAX], 0.0).into(), "at most 1000");
     refuse(2, Gears::rack([P[0], P[1]], P[2], [0.0, 0.0], 1.0, 0.0).into(), "finite");
     refuse(3, Gears::mesh([[P[0], P[1]], [P[2], P[3]]], [2, 3], 0.0).into(), "2 dimensions");
     refuse(2, Area { corners: P[..2].to_vec(), area: 1.0.into() }.into(), "three corners");
