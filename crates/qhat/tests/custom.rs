@@ -92,9 +92,10 @@ fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
 
 #[test]
 fn a_custom_constraint_moves_as_the_same_expression() {
-    // The derivatives agree to roundoff, which 300 frames amplify; measured: 5e-15, 2e-13 and below 1e-12.
-    for (integrator, good) in [(Integrator::Dop853, 1e-12), (Integrator::Rattle, 1e-11), (Integrator::Implicit, 1e-11)]
-    {
+    // The derivatives agree to roundoff, which 300 frames amplify; measured: 5e-15 and 2e-13 m. The implicit method ends
+    // its iterations when forces balance to 1e-8. Roundoff decides whether a step near that limit takes one more
+    // iteration, and 300 steps add up; measured: 3e-8 m.
+    for (integrator, good) in [(Integrator::Dop853, 1e-12), (Integrator::Rattle, 1e-11), (Integrator::Implicit, 1e-6)] {
         let (own, simulation) = run(custom(), integrator, 300);
         let (text, twin) = run(typed(), integrator, 300);
         let apart = largest_difference(&own, &text);
