@@ -135,7 +135,7 @@ impl Hyper {
         for bit in (0..32).rev().skip_while(|bit| n.unsigned_abs() >> bit == 0) {
             power = power * power;
             if n.unsigned_abs() >> bit & 1 == 1 {
-                power = power * self;
+                power *= self;
             }
         }
         if n < 0 { 1.0 / power } else { power }
