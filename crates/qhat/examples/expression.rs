@@ -1,6 +1,8 @@
 //! A constraint and a force from text: a bead on the spiral r = a θ, in a wind that turns.
 //! `cargo run --example expression`
 
+#![allow(clippy::disallowed_methods, reason = "the bits of these numbers need not be the same on every machine")]
+
 use qhat::{Dimension, ExpressionConstraint, ExpressionForce, Particle, Purpose, Settings, Simulation, System};
 use std::error::Error;
 use std::io::{Write, stdout};

@@ -1,5 +1,7 @@
 //! A pendulum: model, step, look. `cargo run --example pendulum`
 
+#![allow(clippy::disallowed_methods, reason = "the bits of these numbers need not be the same on every machine")]
+
 use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
 use std::error::Error;
 use std::io::{Write, stdout};

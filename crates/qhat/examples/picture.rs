@@ -1,5 +1,7 @@
 //! A picture as SVG: links coloured by their tension. `cargo run --example picture > swing.svg`
 
+#![allow(clippy::disallowed_methods, reason = "the bits of these numbers need not be the same on every machine")]
+
 use qhat::{Dimension, Distance, Gravity, Particle, ParticleId, Settings, Simulation, System};
 use std::error::Error;
 use std::io::{Write, stdout};

@@ -24,7 +24,7 @@ const SPIRAL: &str = "0.1*(bead.x*sin(length(bead)/0.1) - bead.y*cos(length(bead
 
 /// The point of the spiral r = 0.1 θ at θ = 20.
 fn on_spiral() -> [f64; 2] {
-    [2.0 * 20.0_f64.cos(), 2.0 * 20.0_f64.sin()]
+    [2.0 * libm::cos(20.0), 2.0 * libm::sin(20.0)]
 }
 
 fn bead() -> ParticleId {
@@ -176,7 +176,8 @@ fn gone_wrong(residual: fn(Hyper, Hyper) -> Hyper, integrator: Integrator) -> Re
 
 #[test]
 fn a_residual_that_goes_wrong_ends_the_step_in_an_error() {
-    let wrong: [(&str, fn(Hyper, Hyper) -> Hyper); 5] = [
+    type Residual = fn(Hyper, Hyper) -> Hyper;
+    let wrong: [(&str, Residual); 5] = [
         ("ln of what is negative", |x, y| y + 0.0 * (1.0 - x).ln()),
         ("C is NaN", |x, y| if x.value() > 1.0 { y.with(f64::NAN, 1.0, 0.0) } else { y }),
         ("C is infinite", |x, y| if x.value() > 1.0 { y / 0.0 } else { y }),

@@ -69,7 +69,7 @@ fn stepped(system: &System, state: &State, integrator: Integrator) -> Simulation
 
 /// C of the rod, |d| − r [m].
 fn stretch(q: &[f64]) -> f64 {
-    q[0].hypot(q[1]) - R
+    libm::hypot(q[0], q[1]) - R
 }
 
 fn forces() -> Vec<Line> {
@@ -346,7 +346,7 @@ fn bodies() -> Vec<Line> {
     let (pendulum, state) = self::pendulum();
     let qdd = bob(&evaluate(&pendulum, &state).accelerations);
     vec![
-        ("L", vec![end[0].hypot(end[1])]),
+        ("L", vec![libm::hypot(end[0], end[1])]),
         ("m of the ends", vec![body.masses[near], body.masses[far]]),
         ("φ̈ of the bar", vec![turn]),
         ("φ̈ of the bob", vec![(qdd[1] + qdd[0]) / 2.0]),
@@ -418,7 +418,7 @@ fn tables(text: &str) -> Vec<Vec<&str>> {
 /// Half a unit in the last digit of a number as it is printed.
 fn half_a_digit(printed: &str) -> f64 {
     let decimals = printed.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap())
+    0.5 * (0..decimals).fold(1.0, |unit, _| unit / 10.0)
 }
 
 /// A printed number; documents and programs have different minus signs.

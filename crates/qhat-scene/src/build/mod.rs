@@ -110,7 +110,6 @@ fn settings(step: &Step) -> Settings {
         max_substeps: step.max_substeps as usize,
         frame_budget: step.frame_budget as usize,
         frame_work: step.frame_work as usize,
-        ..Settings::default()
     }
 }
 

@@ -64,8 +64,8 @@ pub fn eigen(mut a: Vec<f64>, n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
                 continue;
             }
             let slope = (a[q * n + q] - a[p * n + p]) / (2.0 * a[p * n + q]);
-            let tangent = 1.0_f64.copysign(slope) / (slope.abs() + slope.hypot(1.0));
-            let cosine = 1.0 / tangent.hypot(1.0);
+            let tangent = 1.0_f64.copysign(slope) / (slope.abs() + libm::hypot(slope, 1.0));
+            let cosine = 1.0 / libm::hypot(tangent, 1.0);
             let turn = (cosine, cosine * tangent);
             for k in 0..n {
                 (a[k * n + p], a[k * n + q]) = rotated(a[k * n + p], a[k * n + q], turn);
