@@ -77,6 +77,10 @@ pub(crate) struct Run {
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
 
+    /// Do not look for the largest tension, one more solve for each substep
+    #[arg(long)]
+    pub(crate) no_tension: bool,
+
     /// Print the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -248,6 +248,8 @@ fn the_largest_tension_has_four_digits() {
         let scene = PENDULUM.replace("at = [1.0, 0.0], mass = 2.0", &format!("at = [0.0, {y:?}], mass = {mass:?}"));
         let folder = Folder::with(&[("bob.toml", &scene)]);
         let summary = folder.qhat(&["run", "bob.toml"]).well().stdout;
+        let without = folder.qhat(&["run", "bob.toml", "--no-tension"]).well().stdout;
+        assert!(!without.contains("\n  tension"), "--no-tension looks for none:\n{without}");
         let expected = format!("at most {tension} N in ");
         assert!(summary.contains(&expected), "{mass} kg at {y} m: no `{expected}` in\n{summary}");
     }

@@ -43,7 +43,10 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt };
     let (system, state) = (scene.system, scene.state);
     let stopped = match Simulation::new(system.clone(), state.clone(), settings) {
-        Ok(simulation) => job.simulate(simulation)?,
+        Ok(mut simulation) => {
+            simulation.record_tension(!arguments.no_tension);
+            job.simulate(simulation)?
+        }
         // Where no positions satisfy the constraints, the start is the only frame.
         Err(error) => {
             job.start(&system, &evaluate(&system, &state))?;
@@ -104,7 +107,6 @@ struct Job {
 impl Job {
     /// Steps from frame to frame. Returns the reason where the run ends early.
     fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
-        simulation.record_tension(true);
         self.tally.moved = simulation.projection().moved;
         let terms = simulation.terms();
         self.start(simulation.system(), &terms)?;
