@@ -39,6 +39,9 @@
 //! (the scene as Rust types) → `build` (the engine's `System` and `State`). The types of `model` are the only list of
 //! keys: [`json_schema`] is made from them, and `check` follows that schema.
 
+// Doc comments of the model are the texts of the schema too, where a backslash before [m] would be shown.
+#![allow(rustdoc::broken_intra_doc_links, reason = "units in brackets are taken for links")]
+
 mod build;
 mod check;
 mod error;
