@@ -37,7 +37,7 @@ const FLAT: f64 = 1e-6;
 /// ```
 ///
 /// # Errors
-/// In words: fewer than two points, two at the same place, all in one line, or in space all in one plane.
+/// [`GeometryError`]: fewer than two points, two at the same place, all in one line, or in space all in one plane.
 pub fn rigid_rods(dimension: Dimension, points: &[[f64; 3]]) -> Result<Vec<[usize; 2]>, GeometryError> {
     let d = dimension.number();
     let flat: Vec<[f64; 3]> = points.iter().map(|x| std::array::from_fn(|k| if k < d { x[k] } else { 0.0 })).collect();

@@ -17,9 +17,9 @@ use crate::system::System;
 pub struct Energy {
     /// T.
     pub kinetic: f64,
-    /// V, of gravity, springs, point forces and the mouse spring.
+    /// V, over all forces that have a potential.
     pub potential: f64,
-    /// Energy that has crossed the border of the system since t = 0.
+    /// The energy that has crossed the border of the system since t = 0.
     pub work: Work,
 }
 

@@ -1,9 +1,9 @@
-//! Why a step was not taken. Each error reads as a sentence with the names that a user gave.
+//! The reasons for which a step was not taken. Each error reads as a sentence with the names that a user gave.
 
 use crate::settings::{Integrator, SettingsError};
 use thiserror::Error;
 
-/// Why a step was not taken. The state is the last good one.
+/// The reason for which a step was not taken. The state is the last good one.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
@@ -82,7 +82,8 @@ pub enum StepError {
     },
     /// No positions that satisfy the constraints were found nearby.
     #[error(
-        "at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}",
+        "at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}. Compare its \
+         numbers with the positions, and with the constraints beside it",
         shown(*time)
     )]
     NotSatisfied {
@@ -94,7 +95,10 @@ pub enum StepError {
         residual: f64,
     },
     /// The frame would need more substeps than allowed.
-    #[error("at t = {} s the frame needs more than {max_substeps} substeps", shown(*time))]
+    #[error(
+        "at t = {} s the frame needs more than {max_substeps} substeps: raise max_substeps or the tolerance, or use auto",
+        shown(*time)
+    )]
     TooManySubsteps {
         /// t of the last good state \[s\].
         time: f64,

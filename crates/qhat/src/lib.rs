@@ -31,25 +31,26 @@
 //!
 //! **Hold.** A constraint keeps a function of the positions at zero, exactly:
 //!
-//! | to hold | there are |
+//! | held at its value | by |
 //! |---|---|
 //! | a distance | [`Distance`], [`Limits`] (a rope, a strut), [`Lengths`] (a rope over pulleys) |
-//! | a place | [`Nail`], [`Relation`], [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] |
+//! | a place | [`Nail`], [`Relation`], [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnEllipse`], [`OnCurve`] |
 //! | a direction or angle | [`Direction`], [`Angle`] (a motor), [`Gears`] |
 //! | an area or a volume | [`Area`], [`Volume`] |
 //! | a side of a surface | [`Obstacle`] with a [`Surface`], restitution and friction |
-//! | a function of one's own | [`ExpressionConstraint`] from a text, [`CustomConstraint`] from a [`Custom`] in Rust |
+//! | a function of one's own | [`ExpressionConstraint`] from a text, [`Custom`] from a [`CustomConstraint`] in Rust |
 //!
 //! A number that is [`Driven`] follows a function of time: `Driven::text("2*pi*t")`.
 //!
 //! **Push.** Forces: [`Gravity`], [`Drag`], [`AirDrag`], [`Spring`], [`CubicSpring`], [`TorsionSpring`],
 //! [`PointForce`], [`HarmonicForce`], [`Actuator`], [`CentralForce`], [`InverseSquare`], [`Pressure`], [`Gas`],
-//! [`ExpressionForce`], [`ExpressionPotential`], [`CustomForce`].
+//! [`ExpressionForce`], [`ExpressionPotential`], [`CustomForce`] from a [`CustomPotential`] in Rust, and
+//! [`MouseSpring`], the hand of [`Simulation::grab`].
 //!
-//! **Step.** [`Simulation::step`] and [`Simulation::advance`] go on by a frame and tell in a [`StepReport`] how well
-//! the constraints hold, which [`Event`]s happened and what to be warned of. [`Settings`] choose the [`Integrator`],
-//! the frame and the tolerance. [`run_all`] and [`step_all`] run many simulations on every core. Below all this are two
-//! pure functions, [`evaluate`] and [`step`].
+//! **Step.** [`Simulation::step`] and [`Simulation::advance`] go on by a frame. Their [`StepReport`] has the residuals
+//! of the constraints, the [`Event`]s of the frame and its [`Warning`]s. [`Settings`] choose the [`Integrator`], the
+//! frame and the tolerance. [`run_all`] and [`step_all`] run many simulations on every core. Below all this are two
+//! functions whose results depend on their arguments alone, [`evaluate`] and [`step`].
 //!
 //! **Look.** [`Simulation::links`] for tensions, [`reaction`](Simulation::reaction) for the multipliers of a
 //! constraint, [`support`](Simulation::support) for the force on the ground, [`energy`](Simulation::energy), and
@@ -62,7 +63,7 @@
 //!
 //! # Words
 //!
-//! Scene files have words of their own for some of it:
+//! Most kinds have the same word in scene files (`direction`, `relation`, `area`, `volume`, `gears`). These differ:
 //!
 //! | scene | Rust |
 //! |---|---|
@@ -72,10 +73,11 @@
 //! | `pulley`, `length-ratio` | [`Lengths::pulley`], [`Lengths::ratio`] |
 //! | `coincidence`, `midpoint` | [`Relation::coincidence`], [`Relation::midpoint`] |
 //! | `center-of-mass` | [`Relation::center_of_mass`] |
-//! | `line`, `plane`, `sphere`, `circle`, `curve` | [`OnLine`], [`OnPlane`], [`OnSphere`], [`OnCircle`], [`OnCurve`] |
+//! | `line`, `plane`, `sphere` | [`OnLine`], [`OnPlane`], [`OnSphere`] |
+//! | `circle`, `ellipse`, `curve` | [`OnCircle`], [`OnEllipse`], [`OnCurve`] |
 //! | `rigid` | [`rigid_rods`] and [`Distance`] |
 //! | `half-space`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
-//! | `angle`, `gears`, `rack` | [`Angle`], [`Gears`], [`Gears::rack`] |
+//! | `rack` | [`Gears::rack`] |
 //! | `expression` | [`ExpressionConstraint`] |
 //! | `fixed = true` | [`Particle::fixed`] |
 //! | `integrator = "implicit"` or `"backward-euler"` | [`Integrator::Implicit`] |
@@ -96,8 +98,8 @@
 //!
 //! # Debug builds
 //!
-//! Cargo does not pass the profile of a dependency on, so that a debug build of your program compiles qhat without
-//! optimisation. These eight lines in the `Cargo.toml` of your workspace make it as fast as a release build:
+//! The profile of a dependency does not count in the program that depends on it, so a debug build of your program
+//! compiles qhat without optimisation. These eight lines in the `Cargo.toml` of your workspace make it as fast as a release build:
 //!
 //! ```toml
 //! [profile.dev.package.qhat]

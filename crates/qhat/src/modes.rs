@@ -2,7 +2,7 @@
 
 use crate::structure::{Contact, Contacts};
 
-/// What a contact does: which of its rows are active, and how its friction acts.
+/// The mode of a contact: its active rows, and the way in which its friction acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Mode {
     /// Apart: no row is active.

@@ -1,4 +1,4 @@
-//! Reports: what happened in a step, and what a user should know of it.
+//! Reports of steps: substeps, errors, events and warnings.
 
 use crate::drift::Drift;
 use crate::energy::Energy;
@@ -15,7 +15,7 @@ pub struct StepReport {
     pub substeps: usize,
     /// Substeps rejected and tried again, shorter.
     pub rejected: usize,
-    /// Factorizations of A; what goes in lanes is factored in every solve and not counted.
+    /// Factorizations of A. Open chains are factored in every solve; these do not count.
     pub factorizations: usize,
     /// Newton iterations on C(q) = 0.
     pub iterations: usize,
@@ -42,7 +42,7 @@ pub struct StepReport {
     pub warnings: Vec<Warning>,
 }
 
-/// An event: a constraint began or ceased to act.
+/// An event: a constraint begins or ceases to act, or takes an impact.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -51,11 +51,11 @@ pub struct Event {
     pub time: f64,
     /// The name of the constraint.
     pub constraint: String,
-    /// What happened.
+    /// The kind of the event.
     pub kind: EventKind,
 }
 
-/// What can happen to a constraint.
+/// The kind of an event of a constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -1,4 +1,4 @@
-//! Every number a user may tune, with unit, default and valid range.
+//! Every number that a user may tune, with unit, default and valid range.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use thiserror::Error;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Integrator {
-    /// The source's explicit Euler, order 1. Drifts, and gains energy: it shows why the two stability menus exist.
+    /// Explicit Euler, order 1. It drifts off the constraints and gains energy: it shows why [`Feedback`] exists.
     Euler,
     /// Velocities first, then positions with the new velocities, order 1. Keeps energy bounded where Euler does not.
     SymplecticEuler,
@@ -61,24 +61,23 @@ impl Integrator {
         }
     }
 
-    /// Whether it chooses its own substeps within a frame of h (otherwise it takes steps of exactly h).
+    /// Whether the integrator chooses its own substeps within a frame of h; otherwise its steps are exactly h.
     pub fn is_adaptive(self) -> bool {
         matches!(self, Integrator::Auto | Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
     }
 
-    /// Whether it finds the time of an event: where a contact opens or closes, or something breaks.
+    /// Whether the integrator finds the time of an event, such as a contact that closes or a rod that breaks.
     pub fn finds_events(self) -> bool {
         matches!(self, Integrator::Auto | Integrator::Dopri5 | Integrator::Dop853)
     }
 
-    /// Whether it solves at the end of the step, so that no stiffness bounds h (a frame is one step, halved only in
-    /// need).
+    /// Whether the integrator solves at the end of the step, so that no stiffness bounds h. A frame is then one step,
+    /// halved only in need.
     pub fn is_implicit(self) -> bool {
         matches!(self, Integrator::Implicit | Integrator::Bdf2)
     }
 
-    /// Whether it holds C = 0 and Ċ = 0 itself (otherwise it relies on the feedback ks, kd and uses all of
-    /// [`Feedback`]).
+    /// Whether the integrator holds C = 0 and Ċ = 0 itself; otherwise it relies on [`Feedback`].
     pub fn projects(self) -> bool {
         self.is_adaptive() || self.is_implicit()
     }
@@ -112,7 +111,8 @@ impl FromStr for Integrator {
     }
 }
 
-/// What keeps a drifting integrator near C = 0, and the source's two menus. Integrators that project use none of it.
+/// The terms that keep a drifting integrator near C = 0 (ks and kd) and soften the constraints (diagonal drag and
+/// elasticity). Integrators that project use none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -185,6 +185,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The feedback that acts: that of the system, or none under an integrator that projects.
+    pub(crate) fn feedback_in_use(&self, feedback: Feedback) -> Feedback {
+        if self.integrator.projects() { Feedback::NONE } else { feedback }
+    }
+
     /// Whether every number is in its range.
     ///
     /// # Errors
@@ -217,19 +222,19 @@ pub enum SettingsError {
     OutOfRange {
         /// The setting.
         name: &'static str,
-        /// What was given.
+        /// The value that was given.
         value: f64,
-        /// What is allowed.
+        /// The values that are allowed, in words.
         range: &'static str,
     },
     /// An integrator that does not exist.
     #[error("there is no integrator `{name}`; use one of {}", Integrator::ALL.map(Integrator::name).join(", "))]
     UnknownIntegrator {
-        /// What was given.
+        /// The name that was given.
         name: String,
     },
     /// A frame that steps of h do not fill.
-    #[error("a frame of {frame} s is no multiple of the step h = {h} s")]
+    #[error("a frame of {frame} s is no multiple of the step h = {h} s: choose an h that divides it")]
     FrameNotMultiple {
         /// Length of the frame \[s\].
         frame: f64,

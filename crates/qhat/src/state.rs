@@ -1,4 +1,4 @@
-//! State: where everything is, and all that a restart needs to go on with the same bits.
+//! State: positions, velocities and time, and all that a restart needs to go on with the same bits.
 
 use crate::modes::{Mode, Modes};
 
@@ -86,20 +86,23 @@ impl State {
         self.work
     }
 
-    /// The same state with other positions \[m\] and velocities [m/s], d·n numbers each; t, the work and what is broken
-    /// stay.
+    /// The same state with other positions \[m\] and velocities [m/s], d·n numbers each. The time, the
+    /// work and the broken constraints stay.
     ///
     /// # Panics
     /// If the lengths differ from d·n.
     pub fn with_motion(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
         let mut state = State { q: positions, qd: velocities, carry: None, ..self.clone() };
-        // Which contacts hold there, the next frame finds; what is broken stays so.
+        // The next frame finds the contacts that are closed there. Broken constraints stay broken.
         state.modes.contacts.fill(Mode::Open);
         state
     }
 
-    /// The same state with other positions \[m\] and velocities [m/s].
+    /// The former name of [`State::with_motion`].
+    ///
+    /// # Panics
+    /// As [`State::with_motion`].
     #[deprecated(since = "0.1.0", note = "use `with_motion`")]
     pub fn at(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         self.with_motion(positions, velocities)

@@ -1,4 +1,4 @@
-//! What a program asks a simulation: by id and by name, between steps.
+//! Questions of a program to a simulation between steps: by id and by name.
 
 use crate::systems;
 use qhat::{
@@ -280,4 +280,25 @@ fn every_integrator_records_tensions() {
     let largest = simulation.step().unwrap().max_tension.unwrap();
     assert_eq!(simulation.system().constraint_of(largest.link).name, "rod");
     assert!((largest.tension - 30.0).abs() < 1e-9);
+}
+
+/// A jerk that no substep of DOP853 can follow ends its part of the frame in an error; BDF2 carries the frame, and the
+/// record goes on with it.
+#[test]
+fn a_frame_that_auto_hands_over_is_recorded_to_its_end() {
+    let mut builder = System::builder(Dimension::Two);
+    let hand = builder.particle(Particle::at("hand", [0.0, 0.0]));
+    let bob = builder.particle(Particle::at("bob", [0.0, -1.0]));
+    // Within 1e-15 s, shorter than any substep, the hand jumps by 0.3 m.
+    let jump = Driven::text("0.1*atan(1e15*(t - 0.005)) + 0.05*pi").unwrap();
+    builder.constraint("hand", Nail::driven(hand, [jump, 0.0.into(), 0.0.into()]));
+    builder.with_constraint("rod", Distance::new(hand, bob, 1.0)).force(gravity());
+    let (system, state) = builder.build().unwrap();
+    let mut simulation = Simulation::new(system, state, Settings::default()).unwrap();
+    simulation.record_tension(true);
+    let report = simulation.step().unwrap();
+    assert_eq!(report.integrator, Integrator::Bdf2);
+    let largest = report.max_tension.unwrap();
+    assert_eq!(simulation.system().constraint_of(largest.link).name, "rod");
+    assert!(largest.time > 0.005, "the record has the end of the frame: {largest:?}");
 }

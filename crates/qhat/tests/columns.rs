@@ -20,8 +20,8 @@ const GENERATED: [&str; 2] = ["package-lock.json", "Cargo.lock"];
 const ENDINGS: &str = "rs md toml ts mts svelte css html js mjs json jsonc py cpp hpp sh cff yml yaml editorconfig \
     gitattributes";
 
-/// Hand-written files without an ending, by their path from the root.
-const NAMED: [&str; 5] = ["Makefile", "scripts/setup", "scripts/build-wasm", ".ci/run", "benches/peers/run"];
+/// Hand-written files without an ending, by their path from the root, and folders all of whose files are hand-written.
+const NAMED: [&str; 4] = ["Makefile", "scripts/", ".ci/run", "benches/peers/run"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
@@ -40,7 +40,8 @@ fn collect(root: &Path, folder: &str, found: &mut Vec<String>) {
             continue;
         }
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-        let is_written = ENDINGS.split(' ').any(|known| known == ending) || NAMED.contains(&path.as_str());
+        let is_written = ENDINGS.split(' ').any(|known| known == ending)
+            || NAMED.iter().any(|named| path == *named || named.ends_with('/') && path.starts_with(named));
         if is_written && !GENERATED.contains(&name.as_str()) {
             found.push(path);
         }

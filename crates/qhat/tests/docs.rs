@@ -1,6 +1,6 @@
 //! The documents agree with the code: the notation table, the paths that they name, and their links.
 
-use qhat::NOTATION;
+use qhat::{Constraint, Force, NOTATION};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -59,6 +59,16 @@ fn letters_of_the_notation_table_stand_in_their_files() {
         let source = read(&format!("crates/qhat/src/{}", n.file));
         let letters: Vec<&str> = source.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
         assert!(letters.contains(&n.letters), "`{}` is not in {}", n.letters, n.file);
+    }
+}
+
+/// The first page of the Rust documentation groups the kinds by use; a kind that it lacks would not be found.
+#[test]
+fn the_first_page_of_the_library_names_every_kind() {
+    let source = read("crates/qhat/src/lib.rs");
+    let page: String = source.lines().filter(|line| line.starts_with("//!")).collect();
+    for kind in Constraint::KINDS.iter().chain(Force::KINDS) {
+        assert!(page.contains(&format!("[`{kind}`]")), "the head of lib.rs lacks [`{kind}`]");
     }
 }
 

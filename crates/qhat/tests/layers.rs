@@ -8,12 +8,17 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The modules of the table of floors, from the ground up.
+/// The modules of the table of floors, from the ground up. A module may import those of rows above its own, so the
+/// numbers of floors must not fall from row to row.
 fn floors() -> Vec<String> {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let (_, table) = text.split_once("| floor | module |").expect("ARCHITECTURE.md has a table of floors");
     let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
-    rows.map(|row| row.split('|').nth(2).unwrap().trim().trim_matches('`').to_owned()).collect()
+    let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
+    let (numbers, modules): (Vec<usize>, Vec<String>) =
+        cells.map(|cells| (cells[1].parse::<usize>().unwrap(), cells[2].trim_matches('`').to_owned())).unzip();
+    assert!(numbers.is_sorted(), "the floors of ARCHITECTURE.md are not in order: {numbers:?}");
+    modules
 }
 
 /// Every source file of the engine below a folder, without the tests.

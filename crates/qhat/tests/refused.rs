@@ -151,6 +151,9 @@ fn forces_that_cannot_be() {
     for (force, expected) in cases {
         assert_eq!(refuse(force), format!("force number 1: {expected}"));
     }
+    let wind = || PointForce::new(a, [1.0, 0.0]);
+    let got = message(|builder, _, _| _ = [builder.named_force("wind", wind()), builder.named_force("wind", wind())]);
+    assert_eq!(got, "force `wind`: the name is used twice");
 }
 
 #[test]
@@ -164,6 +167,8 @@ fn settings_out_of_range() {
     let constraint = |constraint_tolerance| ("constraint_tolerance", Settings { constraint_tolerance, ..good });
     cases.extend([0.0, 9e-15, 0.011, nan].map(constraint));
     cases.push(("max_substeps", Settings { max_substeps: 0, ..good }));
+    cases.push(("frame_budget", Settings { frame_budget: 0, ..good }));
+    cases.push(("frame_work", Settings { frame_work: 0, ..good }));
     for (expected, settings) in cases {
         let (system, mut state) = systems::pendulum(1.0);
         let Err(SettingsError::OutOfRange { name, .. }) = settings.check() else { panic!("{expected}") };

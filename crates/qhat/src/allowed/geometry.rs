@@ -1,4 +1,4 @@
-//! Why points that a user gave do not make a curve or a rigid cluster.
+//! The reasons for which points of a user do not make a curve or a rigid cluster.
 
 use super::ValueError;
 use thiserror::Error;
@@ -93,19 +93,19 @@ pub enum GeometryError {
     #[error("a rigid cluster has two particles or more")]
     ClusterCount,
     /// A particle of a cluster is at the place of another.
-    #[error("two of its particles are at the same place")]
+    #[error("two of the particles are at the same place")]
     ClusterCoincides {
         /// One of the two points.
         point: usize,
     },
     /// All particles of a cluster are at one place, or two of them are too far apart.
-    #[error("its particles are at the same place, or too far apart to measure")]
+    #[error("the particles are at the same place, or too far apart to measure")]
     ClusterExtent,
     /// All particles of a cluster lie in one line.
-    #[error("its particles lie in one line, which rods between them cannot hold; add one beside it")]
+    #[error("the particles lie in one line, which rods between them cannot hold; add a particle beside the line")]
     ClusterLine,
     /// All particles of a cluster in space lie in one plane.
-    #[error("its particles lie in one plane, which rods between them cannot hold; add one beside it")]
+    #[error("the particles lie in one plane, which rods between them cannot hold; add a particle beside the plane")]
     ClusterPlane,
     /// A number is out of range.
     #[error(transparent)]

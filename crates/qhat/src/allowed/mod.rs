@@ -40,12 +40,6 @@ pub enum ValueError {
         /// The restitution.
         value: f64,
     },
-    /// The tension that breaks a rod or rope is not positive and finite.
-    #[error("the tension at which something breaks must be positive and finite, but is {value}")]
-    Strength {
-        /// The tension \[N\].
-        value: f64,
-    },
     /// A driven number depends on positions or velocities.
     #[error("{what} may depend on nothing but t, but `{expression}` names particles")]
     NamesParticles {
@@ -90,8 +84,5 @@ pub(crate) fn check_restitution(value: f64) -> Result<(), ValueError> {
 
 /// `Ok` if the tension that breaks a link is positive and finite, or there is none.
 pub(crate) fn check_strength(breaks_at: Option<f64>) -> Result<(), ValueError> {
-    match breaks_at {
-        Some(value) if !(value.is_finite() && value > 0.0) => Err(ValueError::Strength { value }),
-        _ => Ok(()),
-    }
+    breaks_at.map_or(Ok(()), |tension| positive("the tension at which something breaks", tension))
 }

@@ -1,13 +1,13 @@
-//! Why there is no such body.
+//! The reasons for which a body is refused.
 
 use thiserror::Error;
 
-/// Why there is no such body.
+/// The reason for which a body is refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
     /// A mass that is not positive and finite \[kg\].
-    #[error("the mass of a body must be above 0, but is {0} kg")]
+    #[error("the mass of a body must be positive and finite, but is {0} kg")]
     Mass(f64),
     /// A coordinate or moment that is not finite.
     #[error("the numbers of a body must be finite")]

@@ -212,7 +212,10 @@ impl Body {
         turning.map(|turning| std::array::from_fn(|k| v[k] + turning[k])).collect()
     }
 
-    /// The length of a rod \[m\].
+    /// The length of a rod \[m\], by its place in [`Body::rods`].
+    ///
+    /// # Panics
+    /// If there is no such rod.
     pub fn length(&self, rod: usize) -> f64 {
         let [a, b] = self.rods[rod];
         norm(minus(self.points[a], self.points[b]))

@@ -178,7 +178,7 @@ impl Holds for Custom {
         }
         check_different(self.particles.iter().copied(), "a custom constraint")?;
         match self.scale {
-            Some(scale) if !(scale.is_finite() && scale > 0.0) => Err(ConstraintError::CustomScale { scale }),
+            Some(scale) if !(scale.is_finite() && scale > 0.0) => Err(ConstraintError::Scale { scale }),
             _ => Ok(()),
         }
     }

@@ -170,12 +170,6 @@ pub enum ConstraintError {
     /// A custom constraint names no particle.
     #[error("a custom constraint names no particle, so that nothing could hold it at zero")]
     CustomWithoutParticles,
-    /// The scale of a custom constraint is not above zero.
-    #[error("the scale of a custom constraint must be above 0 and finite, but is {scale}")]
-    CustomScale {
-        /// The scale \[C\].
-        scale: f64,
-    },
     /// The residual depends on velocities.
     #[error("a constraint may depend on positions and time only, not on velocities")]
     DependsOnVelocities,
@@ -185,8 +179,8 @@ pub enum ConstraintError {
     /// The residual or one of its derivatives is infinite or undefined at the start.
     #[error("the residual or a derivative of it is not a finite number at the start")]
     NotFiniteAtStart,
-    /// The scale of the residual is not above zero.
-    #[error("the scale of a residual must be above 0, but is {scale}")]
+    /// The scale of a residual is not above zero, or not finite.
+    #[error("the scale of a residual must be above 0 and finite, but is {scale}")]
     Scale {
         /// The scale \[C\].
         scale: f64,

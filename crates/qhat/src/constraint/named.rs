@@ -1,6 +1,7 @@
 //! A constraint with the name that a user gave it.
 
-use super::Constraint;
+use super::{Constraint, Holds};
+use std::ops::Range;
 
 /// A constraint with its name and its place among the rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,4 +12,11 @@ pub struct NamedConstraint {
     pub constraint: Constraint,
     /// The first row of the constraint in C, λ and J.
     pub first_row: usize,
+}
+
+impl NamedConstraint {
+    /// The rows of the constraint in C, λ and J, in a system of d dimensions.
+    pub(crate) fn rows(&self, dimension: usize) -> Range<usize> {
+        self.first_row..self.first_row + self.constraint.row_count(dimension)
+    }
 }

@@ -28,8 +28,7 @@ mod workspace;
 
 pub use workspace::Workspace;
 
-use crate::constraint::Holds;
-use crate::constraint::NamedConstraint;
+use crate::constraint::{Holds, NamedConstraint};
 use crate::contact::{close, deepest};
 use crate::error::StepError;
 use crate::report::{Projection, StepReport};

@@ -37,28 +37,24 @@ impl TensionWatch {
 }
 
 impl Workspace {
-    /// From now on the largest tension of every frame is recorded, or not.
+    /// Records the largest tension of every frame from now on, or stops to.
     pub(crate) fn watch_tension(&mut self, system: &System, is_watched: bool) {
         self.watch = is_watched.then(|| TensionWatch::new(system));
-        self.is_watched = is_watched;
     }
 
     /// Arrays for another system, or the same one changed, that go on recording.
     pub(crate) fn renewed(&self, system: &System) -> Workspace {
         let mut workspace = Workspace::new(system);
-        workspace.watch_tension(system, self.is_watched);
+        workspace.watch_tension(system, self.watch.is_some());
         workspace
     }
 
     /// Begins the record of a frame.
     pub(super) fn begin_watch(&mut self, system: &System, settings: &Settings) {
-        if !self.is_watched {
-            return;
+        if let Some(watch) = &mut self.watch {
+            watch.feedback = settings.feedback_in_use(system.feedback);
+            watch.largest = None;
         }
-        // A frame that failed took its watch with it.
-        let watch = self.watch.get_or_insert_with(|| TensionWatch::new(system));
-        watch.feedback = if settings.integrator.projects() { Feedback::NONE } else { system.feedback };
-        watch.largest = None;
     }
 
     /// The largest tension of the frame; `None` unless it is watched.

@@ -25,8 +25,8 @@ pub struct Workspace {
     pub(super) chains: Option<Chains>,
     pub(super) rattle: rattle::Scratch,
     pub(super) implicit: Option<Box<implicit::Scratch>>,
-    /// Whether the largest tension of every frame is recorded, and the record of the frame at hand.
-    pub(super) is_watched: bool,
+    /// The record of the largest tension of a frame, if it is to be recorded. A frame loop takes it for the time that
+    /// the loop runs, and puts it back.
     pub(super) watch: Option<TensionWatch>,
 }
 
@@ -43,7 +43,6 @@ impl Workspace {
             chains: None,
             rattle: rattle::Scratch::new(system),
             implicit: None,
-            is_watched: false,
             watch: None,
         }
     }

@@ -1,4 +1,4 @@
-//! The energy account of a run: how much energy is missing, and against what that is to be measured.
+//! The energy account of a run: the energy that is missing, and the scale that it is compared with.
 //!
 //! ```text
 //! missing = (T + V − work)(t) − (T + V − work)(0)     [J]

@@ -1,4 +1,5 @@
-//! Changes between steps: settings, feedback, forces and forms. The energy account books what each of them costs.
+//! Changes between steps: settings, feedback, forces and forms. The energy that a change costs is booked in the energy
+//! account.
 
 use super::Simulation;
 use crate::constraint::Formulation;
@@ -15,7 +16,7 @@ use crate::system::{System, check_force};
 impl Simulation {
     /// The feedback that acts: none where the integrator projects.
     pub fn feedback_in_use(&self) -> Feedback {
-        if self.settings.integrator.projects() { Feedback::NONE } else { self.system.feedback }
+        self.settings.feedback_in_use(self.system.feedback)
     }
 
     /// Changes the settings. Under an integrator that projects, where the former one did not, the state is made
@@ -48,12 +49,10 @@ impl Simulation {
     /// Puts every constraint into the forms of a formulation.
     ///
     /// # Errors
-    /// Where the integrator projects and the constraints in their new form cannot be satisfied near by.
+    /// Constraints that in their new form no positions near by satisfy, under an integrator that projects. Nothing is
+    /// changed then.
     pub fn set_formulation(&mut self, formulation: Formulation) -> Result<(), StepError> {
-        self.set_system(self.system.with_formulation(formulation))
-    }
-
-    fn set_system(&mut self, system: System) -> Result<(), StepError> {
+        let system = self.system.with_formulation(formulation);
         let mut workspace = self.workspace.renewed(&system);
         let mut state = State { carry: None, ..self.state.clone() };
         if self.settings.integrator.projects() {
@@ -69,7 +68,7 @@ impl Simulation {
     /// as external work.
     ///
     /// # Errors
-    /// An id that this system has not; a force that the builder would refuse. Nothing is changed then.
+    /// An id that the system does not have; a force that the builder would refuse. Nothing is changed then.
     pub fn set_force(&mut self, id: ForceId, force: impl Into<Force>) -> Result<(), ForceError> {
         if id.0 >= self.system.force_names.len() {
             return Err(ForceError::NoForce { force: id.0 });

@@ -1,4 +1,4 @@
-//! Looks at the present state: positions, tensions, reactions, and every symbol of the equation. Looking changes no
+//! Readings of the present state: positions, tensions, reactions, and every symbol of the equation. A reading changes no
 //! later result.
 
 use super::Simulation;
@@ -36,7 +36,7 @@ impl Simulation {
         std::array::from_fn(|k| own.get(k).copied().unwrap_or(0.0))
     }
 
-    /// The particle nearest to a point \[m\], fixed or not, if it is within a distance \[m\]: what a cursor points at.
+    /// The particle nearest to a point \[m\], fixed or not, if it is within a distance \[m\]: the particle under a cursor.
     pub fn nearest(&self, point: impl Into<Vector>, within: f64) -> Option<ParticleId> {
         let point = point.into().0;
         in_dimension!(self.system.dimension, D => {
@@ -110,11 +110,12 @@ impl Simulation {
     /// | [`Obstacle`](crate::Obstacle) | normal, tangents | the push along the outward normal, the friction \[N\] |
     /// | [`OnLine`](crate::OnLine), [`OnPlane`](crate::OnPlane), [`OnCurve`](crate::OnCurve) | normals | the push across \[N\] |
     /// | [`OnCircle`](crate::OnCircle) | radius, axis | the push outwards, the push along the axis \[N\] |
+    /// | [`OnEllipse`](crate::OnEllipse) | 1 | the push outwards over the size of its gradient, 1 on a circle \[N\] |
     /// | [`Angle`](crate::Angle), [`Gears`](crate::Gears) | 1 | the torque that turns the angle up [N·m] |
     /// | [`Area`](crate::Area), [`Volume`](crate::Volume) | 1 | the pressure inside [N/m], [N/m²] |
     /// | [`Direction`](crate::Direction) | normals | the push on the second particle across the line \[N\] |
     /// | [`Lengths`](crate::Lengths) | 1 | minus the tension of a segment of weight 1 \[N\] |
-    /// | [`ExpressionConstraint`](crate::ExpressionConstraint) | 1 | J/C, C in its own unit |
+    /// | [`ExpressionConstraint`](crate::ExpressionConstraint), [`Custom`](crate::Custom) | 1 | in J/C, with C in its own unit |
     ///
     /// The squared forms of the classic formulation have C in m² and λ in N/m.
     ///
@@ -122,9 +123,7 @@ impl Simulation {
     /// If the id is that of another system and this one has no constraint with its number.
     pub fn reaction(&mut self, constraint: ConstraintId) -> Vec<f64> {
         let feedback = self.feedback_in_use();
-        let named = &self.system.constraints[constraint.0];
-        let rows = named.first_row
-            ..named.first_row + crate::constraint::Holds::row_count(&named.constraint, self.system.dimension());
+        let rows = self.system.constraint_of(constraint).rows(self.system.dimension());
         let s = 1.0 - feedback.elasticity;
         in_dimension!(self.system.dimension, D => {
             let equation = self.workspace.solve::<D>(&self.system, &self.state, &feedback);

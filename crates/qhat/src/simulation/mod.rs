@@ -127,7 +127,7 @@ impl Simulation {
 
     /// The energy that is missing at the present state, relative to the largest kinetic energy so far \[1\]; negative
     /// where energy was lost. The divisor is at least a millionth of the work that the applied forces could do over the
-    /// length of the system, so that a structure at rest divides by something.
+    /// length of the system, because the kinetic energy of a structure at rest is roundoff.
     pub fn energy_error(&self) -> f64 {
         self.account.error(&self.energy())
     }

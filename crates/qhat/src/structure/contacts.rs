@@ -39,7 +39,8 @@ pub(crate) struct Contacts {
 impl Contacts {
     pub(crate) fn new(constraints: &[NamedConstraint], dimension: usize) -> Self {
         let mut contacts = Contacts::default();
-        for (place, NamedConstraint { constraint, first_row, .. }) in constraints.iter().enumerate() {
+        for (place, named) in constraints.iter().enumerate() {
+            let NamedConstraint { constraint, first_row, .. } = named;
             let breakable = constraint.breaks_at().map(|_| contacts.breakables.len());
             for rows in constraint.contacts(dimension) {
                 let normal = first_row + rows.normal;
@@ -48,8 +49,7 @@ impl Contacts {
                 contacts.list.push(Contact { constraint: place, normal, tangents, restitution, friction, breakable });
             }
             if let Some(limit) = constraint.breaks_at() {
-                let rows = *first_row..first_row + constraint.row_count(dimension);
-                contacts.breakables.push(Breakable { constraint: place, rows, limit });
+                contacts.breakables.push(Breakable { constraint: place, rows: named.rows(dimension), limit });
             }
         }
         contacts

@@ -3,11 +3,9 @@
 //! Two rows are coupled only if they share a particle that can move, so A is as sparse as the graph of rods. Which
 //! pairs of blocks meet in which entry never changes once a System is built. `multiplier/matrix.rs` writes the numbers.
 
-use crate::constraint::Layout;
-use crate::constraint::Softness;
+use crate::constraint::{Layout, Softness};
 use crate::linalg::{Component, DENSE_UP_TO, EliminationPlan, Hubs, Incidence, Pattern, Symbolic};
 use crate::space::ParticleId;
-
 use std::sync::Arc;
 
 /// The structure of A: its pattern, the contributions to each entry, and the plan of its factorization.

@@ -12,7 +12,7 @@ use crate::state::State;
 use crate::structure::{Contacts, MatrixStructure};
 use std::collections::HashSet;
 
-/// A factor that would take more is refused [bytes]: 16 GiB, above what computers that show such scenes have to spare.
+/// The largest factor of A that is accepted [bytes]: 16 GiB, more than computers that show such scenes have to spare.
 const MEMORY_LIMIT: u64 = 16 << 30;
 
 /// Collects particles, constraints and forces and checks them in [`SystemBuilder::build`].
@@ -45,7 +45,7 @@ impl SystemBuilder {
     /// m \[kg\] of a particle that was added.
     ///
     /// # Panics
-    /// Where there is none with this id.
+    /// If no particle was added under this id.
     pub fn mass(&self, particle: ParticleId) -> f64 {
         self.particles[particle.0].mass
     }
@@ -53,7 +53,7 @@ impl SystemBuilder {
     /// The name of a particle that was added.
     ///
     /// # Panics
-    /// Where there is none with this id.
+    /// If no particle was added under this id.
     pub fn name(&self, particle: ParticleId) -> &str {
         &self.particles[particle.0].name
     }
@@ -186,7 +186,8 @@ impl SystemBuilder {
             let is_new = name.as_ref().is_none_or(|name| names.insert(name));
             let taken = if is_new { Ok(()) } else { Err(ForceError::NameTaken) };
             let fits = || check_force(force, self.dimension, self.particles.len());
-            taken.and_then(|()| fits()).map_err(|reason| BuildError::Force { index, reason })?;
+            let refused = |reason| BuildError::Force { name: name.clone(), index, reason };
+            taken.and_then(|()| fits()).map_err(refused)?;
         }
         self.feedback.check()?;
         Ok(())

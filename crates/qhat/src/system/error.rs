@@ -1,4 +1,4 @@
-//! Why a system could not be built.
+//! The reasons for which a system cannot be built.
 
 use crate::constraint::ConstraintError;
 use crate::force::ForceError;
@@ -28,9 +28,11 @@ pub enum BuildError {
         reason: ConstraintError,
     },
     /// A force is refused.
-    #[error("force number {index}: {reason}")]
+    #[error("force {}: {reason}", name.as_ref().map_or(format!("number {index}"), |name| format!("`{name}`")))]
     Force {
-        /// Its place in the order of addition.
+        /// Its name, if it has one.
+        name: Option<String>,
+        /// Its place in the order of addition, from 0.
         index: usize,
         /// Why it is refused.
         #[source]
@@ -43,9 +45,9 @@ pub enum BuildError {
         memory.div_ceil(1 << 30), limit >> 30
     )]
     TooLarge {
-        /// What it would take \[bytes\].
+        /// The memory that it would take \[bytes\].
         memory: u64,
-        /// What is allowed \[bytes\].
+        /// The memory that is allowed \[bytes\].
         limit: u64,
     },
     /// A feedback coefficient is out of range.

@@ -1,5 +1,5 @@
-//! System: which particles, constraints and forces there are. What is connected to what never changes once it is built;
-//! the numbers of forces and feedback may.
+//! System: its particles, constraints and forces. Constraints keep the particles that they connect from `build` on, so
+//! that the structure of A is found once. A simulation may change forces and feedback.
 
 mod builder;
 mod error;
@@ -11,8 +11,7 @@ pub(crate) use builder::check_force;
 pub use error::{BuildError, ParticleError};
 pub use particle::Particle;
 
-use crate::constraint::Layout;
-use crate::constraint::{Constraint, Formulation, Holds, Link, NamedConstraint, Rows, Softness};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, Rows, Softness};
 use crate::force::{Acts, Force};
 use crate::linalg::Component;
 use crate::point::Motion;
@@ -34,7 +33,7 @@ pub struct System {
     pub(crate) softness: Vec<Softness>,
     pub(crate) layout: Layout,
     pub(crate) matrix: MatrixStructure,
-    /// Its open chains, if it has nothing else.
+    /// The plan of its open chains, if the system consists of nothing else.
     pub(crate) chains: Option<ChainPlan>,
     pub(crate) forces: Vec<Force>,
     /// The names of the forces that the builder was given; forces that a simulation adds later have no place here.
@@ -43,7 +42,7 @@ pub struct System {
     pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
-    /// Its contacts, and what may break.
+    /// The contacts and the breakable constraints.
     pub(crate) contacts: Contacts,
 }
 
@@ -98,26 +97,28 @@ impl System {
         &self.inverse_mass
     }
 
-    /// Whether a particle is held where it is.
+    /// Whether a particle is fixed.
+    ///
+    /// # Panics
+    /// If the id is that of another system and this one has no particle with its number.
     pub fn is_fixed(&self, particle: ParticleId) -> bool {
         self.inverse_mass[particle.0] == 0.0
     }
 
-    /// The constraints, in the order they were added.
+    /// The constraints, in the order of addition.
     pub fn constraints(&self) -> &[NamedConstraint] {
         &self.constraints
     }
 
-    /// What acts along the line of two particles (rods, ropes, struts), in the order they were added: `tension` has one
-    /// number for each.
+    /// The links: constraints that act along the line of two particles (rods, ropes, struts), in the order of addition.
+    /// [`Simulation::tension`](crate::Simulation::tension) has one number for each.
     pub fn links(&self) -> impl Iterator<Item = Link<'_>> {
-        self.constraints.iter().filter_map(|named| {
-            let rows = named.first_row..named.first_row + named.constraint.row_count(self.dimension());
-            Some(named.constraint.as_link()?.link(&named.name, rows))
-        })
+        self.constraints
+            .iter()
+            .filter_map(|named| Some(named.constraint.as_link()?.link(&named.name, named.rows(self.dimension()))))
     }
 
-    /// Which links are broken, by their places among [`System::links`].
+    /// The broken links, by their places among [`System::links`].
     pub fn broken_links(&self, state: &State) -> Vec<usize> {
         let breakables = self.contacts.breakables.iter().zip(&state.modes.broken);
         let broken: Vec<usize> =
@@ -126,8 +127,8 @@ impl System {
         links.filter(|(_, link)| broken.contains(&link.rows.start)).map(|(place, _)| place).collect()
     }
 
-    /// The parts of A = J W Jᵀ that are coupled with no other: how each hangs together, how it is factored and what
-    /// that costs.
+    /// The parts of A = J W Jᵀ that are coupled with no other part: for each its shape, the method that factors it and
+    /// the cost.
     ///
     /// ```
     /// use qhat::{ComponentKind, Dimension, Distance, FactorMethod, Particle, System};
@@ -150,7 +151,7 @@ impl System {
         self.softness[row].is_rigid()
     }
 
-    /// The applied forces, in the order they were added.
+    /// The applied forces, in the order of addition.
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }
@@ -160,7 +161,7 @@ impl System {
         &self.feedback
     }
 
-    /// A length typical of the system \[m\]: the mean rod, else the size of the whole at the start, else 1.
+    /// A length typical of the system \[m\]: the mean length of its rods, else its size at the start, else 1.
     pub fn extent(&self) -> f64 {
         self.extent
     }
@@ -189,7 +190,7 @@ impl System {
         let mut frontier = vec![particle.0];
         let mut mass = 0.0;
         while let Some(i) = frontier.pop() {
-            // What is fixed carries no pull on to others.
+            // A fixed particle passes no pull on to others.
             if i < reached.len() && !reached[i] && self.inverse_mass[i] > 0.0 {
                 reached[i] = true;
                 mass += self.mass[i];
@@ -217,7 +218,7 @@ impl System {
         }
     }
 
-    /// Q = Σ of every force, those of constraints that give way among them.
+    /// Q, the sum of all forces, with those of constraints that give way.
     pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
         self.add_applied_forces(motion, Q);
         for force in &self.compliant {
@@ -225,17 +226,17 @@ impl System {
         }
     }
 
-    /// Every force, those of constraints that give way among them.
+    /// All forces, with those of constraints that give way.
     pub(crate) fn all_forces(&self) -> impl Iterator<Item = &Force> {
         self.forces.iter().chain(&self.compliant)
     }
 
-    /// One of them by its place among them.
+    /// A force by its place in `all_forces`.
     pub(crate) fn numbered_force(&self, number: usize) -> &Force {
         self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
     }
 
-    /// Writes the constraints and all that follows from what they connect.
+    /// Writes the constraints, their rows, and the structure that follows from them.
     fn set_constraints(&mut self, constraints: Vec<(String, Constraint)>) {
         let dimension = self.dimension();
         self.constraints.clear();

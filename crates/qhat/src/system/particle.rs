@@ -13,7 +13,7 @@ pub struct Particle {
     pub velocity: Vec<f64>,
     /// m \[kg\], positive.
     pub mass: f64,
-    /// Whether it is held where it is (W = 0).
+    /// Whether the particle stays where it is (W = 0).
     pub fixed: bool,
 }
 
@@ -39,7 +39,7 @@ impl Particle {
         Particle { fixed: true, ..self }
     }
 
-    /// `Ok` if it can be in d dimensions.
+    /// `Ok` if the particle can be in d dimensions.
     pub(super) fn check(&self, dimension: usize) -> Result<(), ParticleError> {
         for (what, components) in [("position", &self.position), ("velocity", &self.velocity)] {
             if components.len() != dimension {
@@ -58,7 +58,7 @@ impl Particle {
         Ok(())
     }
 
-    /// The same, fixed where it is.
+    /// The former name of [`Particle::fixed`].
     #[deprecated(since = "0.1.0", note = "use `fixed`")]
     pub fn held(self) -> Self {
         self.fixed()

@@ -90,20 +90,22 @@ pub(crate) fn carry_on<const D: usize>(
         && !carry.as_ref().is_some_and(|carry| carry.deficient)
     {
         run.substeps.report.solver = Solver::Chains;
-        match run.along_chains::<D>(plan, state)? {
-            End::Singular => carry = None,
+        match run.along_chains::<D>(plan, state) {
+            Ok(End::Singular) => carry = None,
             end => {
                 run.frame.workspace.watch = run.substeps.watch.take();
-                return Ok((run.substeps.finish(state, None), end == End::Whole));
+                return end.map(|end| (run.substeps.finish(state, None), end == End::Whole));
             }
         }
     }
     run.substeps.report.solver = Solver::Rows;
     let factorizations = run.frame.factorizations();
     begin::<D>(run.frame, state, carry);
-    let end = run.by_rows::<D>(state)?;
+    let end = run.by_rows::<D>(state);
     let PairFrame { frame, mut substeps, .. } = run;
+    // Also after an error, after which `auto` may go on with another method.
     frame.workspace.watch = substeps.watch.take();
+    let end = end?;
     if end == End::Whole && system.contacts.is_empty() {
         // A frame that ran out of work may have ended on a rejected substep: the factor is then that of one of its
         // stages.
