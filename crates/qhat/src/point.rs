@@ -100,3 +100,8 @@ pub(crate) fn add<const D: usize>(flat: &mut [f64], particle: ParticleId, a: Poi
         *target += component;
     }
 }
+
+/// max |x|, without entries that are not a number.
+pub(crate) fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| most.max(x.abs()))
+}

@@ -53,6 +53,7 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
             for _ in 0..60 {
                 simulation.step().unwrap();
             }
+            // The tolerance of a substep.
             assert!(simulation.energy_error_max() < 1e-9, "{dimension:?}: {:e}", simulation.energy_error_max());
         }
     }
@@ -60,7 +61,7 @@ fn friction_without_an_answer_stops_the_slip_at_once() {
 
 /// A particle that slides fast over the edge of a box leaves the box where the edge begins to be round, and falls.
 #[test]
-fn what_slides_over_an_edge_falls_from_there() {
+fn a_particle_that_slides_over_an_edge_falls_from_there() {
     for dimension in [Dimension::Two, Dimension::Three] {
         for friction in [0.0, 0.2] {
             // The radius is a thousandth of the smallest half.

@@ -56,7 +56,7 @@ fn a_rope_that_starts_taut_pulls_from_the_start() {
 /// A pendulum on a rope or a strut, released from the horizontal, carries 3 m g cos a. At twice its weight it breaks at
 /// the same place as a rod.
 #[test]
-fn what_breaks_is_slack_from_then_on() {
+fn a_broken_link_is_slack_from_then_on() {
     let limits: [fn(ParticleId, ParticleId) -> Limits; 2] =
         [|a, b| Limits::rope(a, b, 1.0), |a, b| Limits::between(a, b, 0.5, 1.0)];
     for make in limits {

@@ -114,7 +114,7 @@ fn a_body_from_an_inertia_tensor_has_it() {
 }
 
 #[test]
-fn what_no_body_has_is_refused() {
+fn moments_that_no_body_has_are_refused() {
     let diagonal = |a, b, c| [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]];
     let from = |tensor| Body::from_inertia(1.0, [0.0; 3], tensor);
     assert_eq!(from(diagonal(1.0, 1.0, 2.1)), Err(BodyError::Inertia));

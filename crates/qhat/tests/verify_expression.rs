@@ -234,7 +234,7 @@ fn a_potential_that_changes_with_time_closes_the_account() {
 }
 
 #[test]
-fn what_loses_its_value_ends_in_an_error() {
+fn an_expression_that_loses_its_value_ends_in_an_error() {
     let systems: [fn() -> SystemBuilder; 6] = [
         || chain(vec![row("p0.x"), row("p0.y + ln(1.05 - 10*t) - ln(1.05)")], vec![GRAVITY.into()]),
         || chain(vec![row("p0.x"), row("p0.y + sqrt(1 - 10*t) - 1")], vec![GRAVITY.into()]),
@@ -247,7 +247,7 @@ fn what_loses_its_value_ends_in_an_error() {
         for integrator in Integrator::ALL {
             let (system, state) = system().build().unwrap();
             let settings = Settings { integrator, frame_budget: 1000, frame_work: 100_000, ..Settings::default() };
-            let Ok(mut simulation) = Simulation::new(system, state, settings) else { continue };
+            let mut simulation = Simulation::new(system, state, settings).unwrap();
             let refused = (0..100).find_map(|_| simulation.step().err());
             assert!(refused.is_some(), "system {number} goes on under {integrator}: {:?}", simulation.state());
             assert!(simulation.state().positions().iter().all(|x| x.is_finite()), "{number}, {integrator}");
@@ -256,7 +256,7 @@ fn what_loses_its_value_ends_in_an_error() {
 }
 
 #[test]
-fn what_cannot_be_held_is_refused() {
+fn expressions_that_cannot_be_held_are_refused() {
     let refused = |constraint: Constraint| {
         let mut builder = particles();
         builder.constraint("typed", constraint);

@@ -61,7 +61,7 @@ fn every_force_closes_the_account_of_energy() {
 }
 
 #[test]
-fn a_kepler_orbit_closes_and_keeps_what_it_should() {
+fn a_kepler_orbit_closes_and_keeps_energy_and_angular_momentum() {
     for (d, e) in [(2, 0.0), (2, 0.6), (3, 0.6)] {
         let (mu, a, m) = (3.0_f64, 1.0, 2.0);
         let speed = (mu * (1.0 + e) / (a * (1.0 - e))).sqrt();
@@ -148,7 +148,7 @@ fn an_actuator_gives_push_times_way() {
     assert_close("kinetic", simulation.energy().kinetic, 2.0 * 4.0 / 3.0, 1e-9);
 }
 
-/// Pressure on a closed mesh: no net force and no torque, wherever the origin is, and p V stored.
+/// Pressure on a closed mesh: no net force and no torque about any origin, and p V stored.
 #[test]
 fn a_closed_mesh_is_pushed_nowhere() {
     let mut random = Random::new(4);

@@ -1,4 +1,4 @@
-//! Which contacts act: the mixed complementarity problem, solved with the factor of the active rows.
+//! The choice of the contacts that act: the mixed complementarity problem, solved with the factor of the active rows.
 //!
 //! ```text
 //! equations              A λ = b
@@ -19,6 +19,7 @@ use super::SAME_WAY;
 use super::cones::propose;
 use crate::modes::{Mode, Modes, Slip};
 use crate::multiplier::{Equation, SolveFor};
+use crate::point::largest;
 use crate::structure::Contact;
 use crate::system::System;
 
@@ -29,7 +30,7 @@ const ROUNDOFF: f64 = 1e-10;
 /// Passes for each touching contact, and for four more: problems that end at all end in far fewer.
 const PASSES: usize = 8;
 
-/// How often directions of slip are aligned with the slip. Each time the error shrinks by the part that friction has
+/// Number of times that directions of slip are aligned with the slip. Each time the error shrinks by the part that friction has
 /// in the slip.
 const ALIGNMENTS: usize = 10;
 
@@ -145,7 +146,7 @@ fn contradictions<const D: usize>(
     touching: &[Touching],
 ) -> Vec<(usize, Mode)> {
     let lambda = &equation.lambda;
-    let small_force = ROUNDOFF * lambda.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let small_force = ROUNDOFF * largest(lambda);
     let small_gap = small_gap(equation, system, touching);
     let w = |row: usize| w::<D>(equation, row);
     let mut changes = Vec::new();

@@ -12,9 +12,10 @@
 //! be bent round it; so such a turn ends the substep.
 
 use crate::constraint::Rows;
+use crate::linalg::block::vector;
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
-use crate::point::{Point, dot};
+use crate::point::{dot, largest};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -88,7 +89,7 @@ impl EventFunctions<'_> {
         event_functions.clear();
         let lambda = &equation.lambda;
         let least = f64::MIN_POSITIVE;
-        let no_force = (NO_FORCE * lambda.iter().fold(0.0_f64, |most, force| most.max(force.abs()))).max(least);
+        let no_force = (NO_FORCE * largest(lambda)).max(least);
         let no_slip = rest_speed.max(least);
         for (contact, mode) in system.contacts.list.iter().zip(&modes.contacts) {
             let row = contact.normal;
@@ -128,13 +129,12 @@ impl EventFunctions<'_> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Normals {
     /// d numbers for each entry of J.
-    entries: Vec<f64>,
+    blocks: Vec<f64>,
 }
 
 impl Normals {
-    pub(crate) fn begin<const D: usize>(&mut self, rows: &Rows) {
-        self.entries.clear();
-        (0..rows.J.layout.particle.len()).for_each(|e| self.entries.extend(rows.J.entry::<D>(e)));
+    pub(crate) fn begin(&mut self, rows: &Rows) {
+        self.blocks.clone_from(&rows.J.blocks);
     }
 
     /// The cosine between a row of J then and now.
@@ -142,7 +142,7 @@ impl Normals {
         let entries = rows.J.layout.start[row]..rows.J.layout.start[row + 1];
         let [mut along, mut then, mut now] = [0.0; 3];
         for e in entries {
-            let (a, b): (Point<D>, Point<D>) = (std::array::from_fn(|k| self.entries[e * D + k]), rows.J.entry::<D>(e));
+            let (a, b) = (vector::<D>(&self.blocks, e), rows.J.entry::<D>(e));
             along += dot(a, b);
             then += dot(a, a);
             now += dot(b, b);

@@ -59,7 +59,8 @@ impl<const D: usize> Impact<'_, D> {
                     self.qd.copy_from_slice(&after);
                     return Ok(lost);
                 }
-                _ => with_restitution = false,
+                // No answer, or energy gained.
+                Err(_) | Ok(()) => with_restitution = false,
             }
         }
     }

@@ -11,7 +11,7 @@ use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::report::{Event, EventKind};
 use crate::settings::Feedback;
 use crate::structure::Contacts;
@@ -124,8 +124,8 @@ impl<const D: usize> EventResolution<'_, D> {
 
     /// The speed below which a flight under the applied forces is shorter than the rest time [m/s].
     fn bounce_speed(&self) -> f64 {
-        let largest = self.equation.WQ.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
-        self.thresholds.shortest_flight.map_or(f64::INFINITY, |flight| 0.5 * flight * largest)
+        let strongest = largest(&self.equation.WQ);
+        self.thresholds.shortest_flight.map_or(f64::INFINITY, |flight| 0.5 * flight * strongest)
     }
 
     /// Ċ of a contact: the speed at which it separates.
@@ -149,7 +149,7 @@ impl<const D: usize> EventResolution<'_, D> {
         near
     }
 
-    /// Those of them that are open and closing.
+    /// Those of the contacts near that are open and closing.
     fn closing(&self, modes: &Modes, near: &[usize]) -> Vec<usize> {
         let rest_speed = self.rest_speed();
         let closes = |&k: &usize| modes.contacts[k] == Mode::Open && -self.rate(k) > rest_speed;
@@ -191,7 +191,7 @@ impl<const D: usize> EventResolution<'_, D> {
     }
 
     /// Opens the contacts that separate faster than the bounce speed, after an impact the closed ones, too. Returns the
-    /// others, with the modes of their slips brought up to date: the complementarity problem decides them.
+    /// other contacts, with the modes of their slips brought up to date: the complementarity problem decides them.
     fn open_separating(
         &self,
         modes: &mut Modes,
@@ -215,7 +215,7 @@ impl<const D: usize> EventResolution<'_, D> {
                     if kept.direction[0] * slip[0] + kept.direction[1] * slip[1] > SAME_WAY => {}
                 (Mode::Sliding(_) | Mode::Sticking, Some(direction)) => *mode = Mode::sliding(direction),
                 (Mode::Sliding(_), None) => *mode = Mode::Sticking,
-                _ => {}
+                (Mode::Open | Mode::Smooth, _) | (Mode::Sticking, None) => {}
             }
             undecided.push(touching);
         }
@@ -242,7 +242,15 @@ impl<const D: usize> EventResolution<'_, D> {
                     modes.contacts[k] = Mode::sliding(direction);
                 }
             }
-            _ => {}
+            // Every other change is decided by the complementarity problem.
+            Some(
+                EventCause::Normal(_)
+                | EventCause::Friction(_)
+                | EventCause::Turn(_)
+                | EventCause::Break(_)
+                | EventCause::Singular(_),
+            )
+            | None => {}
         }
     }
 

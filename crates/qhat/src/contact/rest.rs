@@ -1,5 +1,7 @@
 //! Touch and rest: the distances, times and speeds below which a contact counts as touching or at rest.
 
+use crate::point::largest;
+
 /// Gap below which an open contact touches, in constraint tolerances: twice what its event function may be off at the
 /// event.
 pub(crate) const TOUCH_DISTANCE: f64 = 2.0;
@@ -19,6 +21,5 @@ pub(crate) struct RestThresholds {
 /// The rest speed [m/s]: a billionth of the fastest particle, or of the change of velocity by the applied forces in one
 /// frame. A slower slip or approach counts as zero.
 pub(crate) fn rest_speed(qd: &[f64], WQ: &[f64], frame: f64) -> f64 {
-    let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     1e-9 * largest(qd).max(frame * largest(WQ))
 }

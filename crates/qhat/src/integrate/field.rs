@@ -4,20 +4,19 @@
 //! side by side, or the user's order filled up with zeros. The method adds and scales blocks without knowing which.
 
 use super::Workspace;
-use super::projection::largest;
 use crate::chains::{Chains, Projected};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
 use crate::multiplier::SolveFor;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
 use crate::structure::ChainPlan;
 use crate::system::System;
 
-/// Newton iterations of one projection. With the factor of the last stage each gains two to four digits, and the
-/// correction is small.
+/// Newton iterations of one projection. The factor is that of the last stage, near by, and the correction is small: a
+/// projection that takes more is not worth its substep.
 const MAX_ITERATIONS: usize = 8;
 
 /// Power that no potential accounts for [W].
@@ -30,7 +29,7 @@ pub(super) struct Power {
 
 /// q̈(q, q̇, t), in an order of its own. The two implementations are [`GeneralField`] and [`ChainField`].
 pub(super) trait Field {
-    /// How many blocks of eight numbers q has.
+    /// Number of blocks of eight numbers that q has.
     fn blocks(&self) -> usize;
 
     /// Writes the state to blocks.

@@ -32,11 +32,11 @@ use crate::constraint::{Holds, NamedConstraint};
 use crate::contact::{close, deepest};
 use crate::error::StepError;
 use crate::report::{Projection, StepReport};
-use crate::settings::{Integrator, Settings};
+use crate::settings::{Integrator, Settings, SettingsError};
 use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
-use adaptive::{dop853, dopri5, pair};
+use adaptive::{dop853, dopri5, pair_frame};
 use frame::Frame;
 
 /// Advances a state by one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
@@ -62,7 +62,8 @@ pub(crate) fn step_for(
     workspace: &mut Workspace,
 ) -> Result<StepReport, StepError> {
     settings.check()?;
-    check_switches(system, settings)?;
+    check_finds_events(system, settings)?;
+    check_length(length)?;
     workspace.begin_watch(system, settings);
     let frame = &mut Frame { system, settings, workspace, length };
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
@@ -71,8 +72,8 @@ pub(crate) fn step_for(
         Integrator::Rk4 => fixed::run::<D>(frame, state, fixed::rk4::step::<D>),
         Integrator::Auto => auto::frame::<D>(frame, state),
         Integrator::Rattle => rattle::frame::<D>(frame, state),
-        Integrator::Dopri5 => pair::frame::<D>(&dopri5::DOPRI5, frame, state),
-        Integrator::Dop853 => pair::frame::<D>(&dop853::DOP853, frame, state),
+        Integrator::Dopri5 => pair_frame::frame::<D>(&dopri5::DOPRI5, frame, state),
+        Integrator::Dop853 => pair_frame::frame::<D>(&dop853::DOP853, frame, state),
         Integrator::Implicit => implicit::frame::<D>(&implicit::backward_euler::BACKWARD_EULER, frame, state),
         Integrator::Bdf2 => implicit::frame::<D>(&implicit::bdf2::BDF2, frame, state),
     })?;
@@ -84,8 +85,17 @@ pub(crate) fn step_for(
     Ok(StepReport { integrator, max_tension: workspace.largest_tension(), ..report })
 }
 
-/// Refuses an integrator that locates no events, for a system that has some.
-pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(), StepError> {
+/// Refuses a frame that would never end, or end before it began.
+fn check_length(length: f64) -> Result<(), SettingsError> {
+    if length.is_finite() && length > 0.0 {
+        Ok(())
+    } else {
+        Err(SettingsError::OutOfRange { name: "frame", value: length, range: "finite and positive" })
+    }
+}
+
+/// Refuses an integrator that locates no events, for a system that has contacts or breakable constraints.
+pub(crate) fn check_finds_events(system: &System, settings: &Settings) -> Result<(), StepError> {
     let first = system.contacts.list.first().map(|contact| contact.constraint);
     match first.or(system.contacts.breakables.first().map(|breakable| breakable.constraint)) {
         Some(place) if !settings.integrator.finds_events() => {
@@ -102,7 +112,7 @@ pub(crate) fn check_switches(system: &System, settings: &Settings) -> Result<(),
 /// # Errors
 /// [`StepError::NoEvents`]; [`StepError::Penetrates`], of the constraint that is violated most.
 pub fn check_start(system: &System, state: &State, settings: &Settings) -> Result<(), StepError> {
-    check_switches(system, settings)?;
+    check_finds_events(system, settings)?;
     let violation = in_dimension!(system.dimension, D => deepest::<D>(system, state, settings.constraint_tolerance));
     match violation {
         Some((place, depth)) => {

@@ -12,7 +12,7 @@ use super::Workspace;
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
 use crate::multiplier::{Equation, SolveFor};
-use crate::point::{Motion, block, dot};
+use crate::point::{Motion, block, dot, largest};
 use crate::report::Projection;
 use crate::settings::Settings;
 use crate::space::ParticleId;
@@ -135,11 +135,6 @@ impl<const D: usize> Projector<'_, D> {
     fn is_met(&self, off: f64) -> bool {
         off <= attainable(self.system, self.settings, largest(self.q))
     }
-}
-
-/// max |x|, without entries that are not a number.
-pub(super) fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// The largest distance between two blocks of D numbers.

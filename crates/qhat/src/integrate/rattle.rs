@@ -19,18 +19,16 @@
 
 use super::Workspace;
 use super::adaptive::control::RowSums;
-use super::adaptive::{self, Attempt, Outcome, Stepper, Substeps};
+use super::adaptive::{self, Attempt, Outcome, Stepper, Substeps, dopri5, pair_frame};
 use super::frame::Frame;
-use super::projection::largest;
-use super::{dopri5, pair};
 use crate::constraint::Jacobian;
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::error::StepError;
 use crate::multiplier::SolveFor;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::report::{StepReport, Warning};
-use crate::settings::{Integrator, Settings};
+use crate::settings::Integrator;
 use crate::state::State;
 use crate::system::System;
 
@@ -39,8 +37,8 @@ use crate::system::System;
 const MAX_ITERATIONS: usize = 16;
 
 /// Factor on the error estimate: the difference of the multipliers estimates the local error up to a factor. With
-/// this one the default tolerance of 1e-4 left energy errors of 1e-6 to 1e-3 after 2 s of chains and 60 s of
-/// pendulums, and 2e-2 after 5 s of a whipping net.
+/// this one the default tolerance of 1e-4 leaves energy errors of 4e-7 to 5e-4 after 2 s of chains and of a net
+/// (`benches/results/workloads.csv`).
 const ERROR_SCALE: f64 = 8.0;
 
 /// Arrays of one substep.
@@ -81,65 +79,60 @@ impl Scratch {
 }
 
 /// RATTLE under way over one frame.
-struct RattleStepper<'a, const D: usize> {
-    system: &'a System,
-    settings: &'a Settings,
-    workspace: &'a mut Workspace,
+struct RattleStepper<'a, 'f, const D: usize> {
+    frame: &'a mut Frame<'f>,
     /// λ of the substep before, the first guess of the next.
     lambda: Vec<f64>,
 }
 
 /// Advances the state by one frame.
 pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) -> Result<StepReport, StepError> {
-    adaptive::check_length(frame.length)?;
     let (start, length, factorizations) = (state.t, frame.length, frame.factorizations());
     let mut substeps = Substeps::new(frame, state);
-    substeps.watch = frame.workspace.watch.take();
     let carry = state.carry.take();
     let lambda = adaptive::begin::<D>(frame, state, carry);
     frame.workspace.equation.solver.memory.forget();
-    let mut stepper =
-        RattleStepper::<D> { system: frame.system, settings: frame.settings, workspace: frame.workspace, lambda };
+    let mut stepper = RattleStepper::<D> { frame, lambda };
     let end = substeps.run(&mut stepper, state);
     let lambda = stepper.lambda;
-    frame.workspace.watch = substeps.watch.take();
     substeps.report.factorizations = frame.factorizations() - factorizations;
     substeps.report.integrator = Integrator::Rattle;
     match end {
         Ok(_) => {
             frame.workspace.note_factored(state);
-            Ok(substeps.finish(state, Some((lambda, &frame.workspace.equation))))
+            Ok(substeps.finish(frame, state, Some(lambda)))
         }
         Err(StepError::NotSatisfied { .. }) => {
-            let mut report = substeps.finish(state, None);
+            let mut report = substeps.finish(frame, state, None);
             report.warn(Warning::HandedOver { time: state.t });
             state.carry = None;
-            let rest = pair::frame::<D>(&dopri5::DOPRI5, &mut frame.over(start + length - state.t), state)?;
+            let rest = pair_frame::frame::<D>(&dopri5::DOPRI5, &mut frame.over(start + length - state.t), state)?;
             report.absorb(StepReport { integrator: Integrator::Dopri5, ..rest });
             // The two parts add up to the frame only up to rounding.
             state.t = start + length;
             Ok(report)
         }
-        Err(error) => Err(error),
+        Err(error) => Err(substeps.fail(frame, error)),
     }
 }
 
-impl<const D: usize> Stepper for RattleStepper<'_, D> {
+impl<const D: usize> Stepper for RattleStepper<'_, '_, D> {
     fn estimate_order(&self) -> f64 {
         3.0
     }
 
     fn longest(&mut self, state: &State) -> f64 {
-        let Workspace { equation, rattle: Scratch { row_sums, .. }, .. } = &mut *self.workspace;
+        let Frame { system, ref mut workspace, .. } = *self.frame;
+        let Workspace { equation, rattle: Scratch { row_sums, .. }, .. } = &mut **workspace;
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-        row_sums.longest_substep(self.system, equation, &self.lambda, motion)
+        row_sums.longest_substep(system, equation, &self.lambda, motion)
     }
 
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
         let Some((error, iterations)) = self.substep(state, h, end) else {
             return Outcome::NotMet;
         };
-        let RattleStepper { system, workspace, .. } = self;
+        let Frame { system, workspace, .. } = &*self.frame;
         let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
         let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
         // μ/h is the impulse where the substep begins, ν where it ends.
@@ -149,31 +142,32 @@ impl<const D: usize> Stepper for RattleStepper<'_, D> {
     }
 
     fn keep(&mut self, state: &mut State, h: f64) -> Drift {
-        for (multiplier, nu) in self.lambda.iter_mut().zip(&self.workspace.rattle.nu) {
+        for (multiplier, nu) in self.lambda.iter_mut().zip(&self.frame.workspace.rattle.nu) {
             *multiplier = 2.0 / h * nu;
         }
-        std::mem::swap(&mut state.q, &mut self.workspace.q);
-        std::mem::swap(&mut state.qd, &mut self.workspace.qd);
-        drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.equation.inactive, &state.q)
+        let Frame { system, workspace, .. } = &mut *self.frame;
+        std::mem::swap(&mut state.q, &mut workspace.q);
+        std::mem::swap(&mut state.qd, &mut workspace.qd);
+        drift::<D>(system, &workspace.equation.rows, &workspace.equation.inactive, &state.q)
     }
 
     fn turn_back(&mut self, state: &State) {
-        adaptive::return_to::<D>(self.system, state, &mut self.workspace.equation);
+        adaptive::return_to::<D>(self.frame.system, state, &mut self.frame.workspace.equation);
     }
 
     fn end(&mut self, _: &mut State) {}
 
     fn write_tried(&self, state: &mut State) {
-        state.q.copy_from_slice(&self.workspace.q);
-        state.qd.copy_from_slice(&self.workspace.qd);
+        state.q.copy_from_slice(&self.frame.workspace.q);
+        state.qd.copy_from_slice(&self.frame.workspace.qd);
     }
 }
 
-impl<const D: usize> RattleStepper<'_, D> {
+impl<const D: usize> RattleStepper<'_, '_, D> {
     /// Tries one substep from `state` to the time `end`, into the workspace. Returns the error estimate relative to
     /// the extent of the system and the number of Newton iterations; `None` if the constraints were not met.
     fn substep(&mut self, state: &State, h: f64, end: f64) -> Option<(f64, usize)> {
-        let RattleStepper { system, settings, workspace, lambda } = self;
+        let Frame { system, settings, ref mut workspace, .. } = *self.frame;
         let Workspace { equation, q, qd, rattle: scratch, .. } = &mut **workspace;
         let (W, matrix) = (&system.inverse_mass, &system.matrix);
         scratch.J.blocks.copy_from_slice(&equation.rows.J.blocks);
@@ -181,7 +175,7 @@ impl<const D: usize> RattleStepper<'_, D> {
         scratch.Ct.copy_from_slice(&equation.rows.Ct);
 
         // q̇½, and q' with the multipliers of the last substep.
-        for (mu, multiplier) in scratch.mu.iter_mut().zip(&*lambda) {
+        for (mu, multiplier) in scratch.mu.iter_mut().zip(&self.lambda) {
             *mu = 0.5 * h * h * multiplier;
         }
         for k in 0..q.len() {

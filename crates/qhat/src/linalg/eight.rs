@@ -36,17 +36,22 @@ impl F8 {
         F8(std::array::from_fn(|k| self.0[(k + 1) % LANES]))
     }
 
-    /// Sum over the lanes, always in the same order of additions.
+    /// The sum over the lanes.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
+        across(&self.0)
     }
 
     /// max over the lanes; NaN if any lane is NaN.
     pub(crate) fn largest(self) -> f64 {
         self.0.into_iter().fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most })
     }
+}
+
+/// The sum over the lanes, always in the same order of additions.
+#[inline(always)]
+pub(crate) fn across(x: &Eight) -> f64 {
+    ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
 /// The widest vector unit of this machine; in the browser the vector unit that the page was built for.

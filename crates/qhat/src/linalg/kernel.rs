@@ -63,9 +63,3 @@ pub(crate) fn minus_scaled(a: &Eight, b: &Eight, c: f64) -> Eight {
 pub(crate) fn scaled(a: &Eight, c: f64) -> Eight {
     a.map(|a| a * c)
 }
-
-/// The sum over the lanes, always in the same order of additions.
-#[inline(always)]
-pub(crate) fn across(x: &Eight) -> f64 {
-    ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
-}

@@ -3,9 +3,9 @@
 //!
 //! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM TOMS 9 (1983).
 
-use super::eight::Eight;
+use super::eight::{Eight, across};
 use super::fronts::{Front, FrontPlan};
-use super::kernel::{COLUMNS, H, across, columns, minus_scaled, outer, rows, scaled, subtract};
+use super::kernel::{COLUMNS, H, columns, minus_scaled, outer, rows, scaled, subtract};
 use pulp::{Arch, NullaryFnOnce};
 
 /// L D Lᵀ of some rows.

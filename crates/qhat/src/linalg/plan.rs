@@ -19,7 +19,7 @@ pub enum ComponentKind {
     Cyclic,
 }
 
-/// How a component is factored.
+/// The method by which a component is factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FactorMethod {
@@ -62,7 +62,7 @@ pub struct Component {
     pub rows: usize,
     /// Number of hubs: points with so many rows that their accelerations stay in the matrix as unknowns.
     pub hubs: usize,
-    /// How it is factored.
+    /// The method by which it is factored.
     pub method: FactorMethod,
     /// Entries of L, its diagonal among them.
     pub entries: u64,
@@ -75,8 +75,8 @@ pub struct Component {
 }
 
 /// Least number of unknowns at a point that makes it a hub. A point that is eliminated into A couples all its unknowns
-/// with each other. A star of 30 spokes takes 3.6 µs with this clique and 1.3 µs with a hub; matrices with fewer
-/// unknowns at each point are mostly small and factored densely.
+/// with each other. A star of 30 spokes takes 3.6 µs with this clique and 1.3 µs with a hub (star30 of `timed_solves` in
+/// `multiplier/tests.rs`). Matrices with fewer unknowns at each point are mostly small and factored densely.
 pub(crate) const HUB_FROM: usize = 32;
 
 /// Least number of operations for each entry of L with which the multifrontal method is chosen. A net of 10 × 10 (9

@@ -1,6 +1,6 @@
 //! Rank of a positive semidefinite matrix by LDLᵀ with diagonal pivoting: the largest remaining pivot goes first, and
-//! the rank is the number of pivots above the roundoff of the elimination. Source: Higham, Analysis
-//! of the Cholesky decomposition of a semi-definite matrix (1990).
+//! the rank is the number of pivots above the roundoff of the elimination.
+//! Source: Higham, Analysis of the Cholesky decomposition of a semi-definite matrix (1990).
 
 /// Rank of a dense positive semidefinite matrix with unit or zero diagonal, `n × n` row after row; `matrix` is
 /// consumed.

@@ -24,7 +24,7 @@ const ACCEPTED_RESIDUAL: f64 = 1e-6;
 /// Order above which the rank is not computed, since the work grows with its cube; only the deficiency is reported.
 const RANK_UP_TO: usize = 1200;
 
-/// Which solution of a singular A λ = b to return, and how accurately.
+/// The solution of a singular A λ = b that is wanted, and its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SolveFor {
     /// The λ of least norm: for terms and tensions that people read.
@@ -47,7 +47,7 @@ pub(crate) struct MultiplierSolver {
     pub(crate) deficient: bool,
     /// δ of G (`singular.rs`).
     pub(super) delta: f64,
-    /// Which A is factored, and whether it was singular.
+    /// The state of the A that is factored, and whether A was singular.
     pub(crate) memory: FactorMemory,
     /// Whether M has a null space. With hubs, G may be needed although M has none.
     pub(crate) singular: bool,
@@ -160,7 +160,7 @@ impl MultiplierSolver {
         self.x.copy_from_slice(&self.b);
         self.factor.solve(&mut self.x);
         self.residual(matrix);
-        let (residual, size) = (largest(&self.r), largest(&self.b));
+        let (residual, size) = (largest_or_nan(&self.r), largest_or_nan(&self.b));
         // A right-hand side that is not finite does not come from the matrix; the step will report it.
         residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
     }
@@ -196,7 +196,7 @@ impl MultiplierSolver {
 }
 
 /// max |x_i|; not a number if any is not.
-pub(super) fn largest(x: &[f64]) -> f64 {
+pub(super) fn largest_or_nan(x: &[f64]) -> f64 {
     let mut largest = 0.0_f64;
     for &value in x {
         if value.is_nan() {

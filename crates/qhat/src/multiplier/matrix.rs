@@ -18,8 +18,9 @@
 //! ```
 
 use crate::constraint::Jacobian;
+use crate::linalg::block::vector;
 use crate::linalg::{Incidence, Pattern, SymmetricMatrix};
-use crate::point::{Point, dot, scaled};
+use crate::point::{dot, scaled};
 use crate::structure::MatrixStructure;
 
 impl MatrixStructure {
@@ -63,7 +64,7 @@ impl MatrixStructure {
             for slot in pattern.start[i]..pattern.start[i + 1] {
                 for (particle, left) in moving(i) {
                     for (_, right) in moving(pattern.column[slot]).filter(|(other, _)| *other == particle) {
-                        let (left, right) = (point::<D>(left), point::<D>(right));
+                        let (left, right) = (vector::<D>(left, 0), vector::<D>(right, 0));
                         values[slot] += dot(scaled(W[particle.0], left), right);
                     }
                 }
@@ -71,8 +72,4 @@ impl MatrixStructure {
         }
         SymmetricMatrix { pattern, values }
     }
-}
-
-fn point<const D: usize>(numbers: &[f64]) -> Point<D> {
-    std::array::from_fn(|k| numbers[k])
 }

@@ -1,15 +1,15 @@
-//! FactorMemory: which A the factor at hand belongs to, and whether A was found singular.
+//! FactorMemory: the state whose A is factored, and whether A was found singular.
 //!
 //! Invariant: if `at` is not empty, the solver holds the factor of A = J W Jᵀ, without ε, at that q and t, for the rows
 //! that were active then. So
 //!
-//! - every factorization forgets (`MultiplierSolver::factor`), and whoever knows where it was made notes it;
+//! - every factorization forgets (`MultiplierSolver::factor`), and a caller that knows its state notes it;
 //! - a method forgets before it moves the state;
-//! - a question names the inactive rows: other modes of contacts are another A.
+//! - `is_of` asks for the inactive rows, too: other modes of contacts are another A.
 //!
 //! A factor that is kept must not change a bit of the motion: readers of terms between two steps, and restarts from a
-//! saved state, get the same motion. A singular A is therefore not kept by the methods that read λ from it; they ask
-//! again whether it is singular.
+//! saved state, get the same motion. The factor of a singular A is therefore not kept by the methods that read λ from
+//! it; they factor again, and ask again whether A is singular.
 
 use crate::state::State;
 

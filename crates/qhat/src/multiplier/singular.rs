@@ -12,7 +12,7 @@
 //! unique in any case. |null(b)| is how far the rows contradict each other. A solve for the force alone leaves out
 //! both null(·), and takes a smaller δ.
 
-use super::factor::{MultiplierSolver, SolveFor, largest};
+use super::factor::{MultiplierSolver, SolveFor, largest_or_nan};
 use crate::structure::MatrixStructure;
 
 /// δ of a least-norm solve. Refinement shrinks the error by δ/σ a pass, so δ must lie well below the eigenvalues σ that
@@ -78,7 +78,7 @@ impl MultiplierSolver {
             self.add_delta(matrix, REGULARIZATION);
         }
         // b ← b − null(b).
-        let size = largest(&self.b);
+        let size = largest_or_nan(&self.b);
         self.y.copy_from_slice(&self.b);
         self.keep_null_space(matrix, size);
         for i in 0..self.b.len() {
@@ -88,7 +88,7 @@ impl MultiplierSolver {
         // x ← x − null(x).
         self.y.copy_from_slice(&self.x);
         self.clear_hubs(matrix);
-        self.keep_null_space(matrix, largest(&self.y));
+        self.keep_null_space(matrix, largest_or_nan(&self.y));
         for i in 0..self.x.len() {
             self.x[i] -= self.y[i];
         }
@@ -96,7 +96,7 @@ impl MultiplierSolver {
 
     /// x ← x + G (b − M x), from 0; whether b was met to roundoff.
     fn refine(&mut self, matrix: &MatrixStructure, wanted: SolveFor) -> bool {
-        let size = largest(&self.b);
+        let size = largest_or_nan(&self.b);
         self.x.fill(0.0);
         self.r.copy_from_slice(&self.b);
         let mut reached = size;
@@ -109,7 +109,7 @@ impl MultiplierSolver {
                 self.x[i] += self.r[i];
             }
             self.residual(matrix); // r = b − M x
-            let last = std::mem::replace(&mut reached, largest(&self.r));
+            let last = std::mem::replace(&mut reached, largest_or_nan(&self.r));
             if reached > 0.5 * last {
                 break;
             }
@@ -143,7 +143,7 @@ impl MultiplierSolver {
         self.clear_hubs(matrix);
         self.keep_null_space(matrix, 1.0);
         // Ten passes leave 1e-20 of a direction with σ > 1e-6, and all of the null space.
-        largest(&self.y) > 1e-9
+        largest_or_nan(&self.y) > 1e-9
     }
 
     /// y ← 0 at the unknowns of hubs: they are no part of the space of rows.

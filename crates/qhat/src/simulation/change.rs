@@ -6,7 +6,7 @@ use crate::constraint::Formulation;
 use crate::energy;
 use crate::error::StepError;
 use crate::force::{Acts, Drag, Force, ForceError, Gravity};
-use crate::integrate::{check_switches, project};
+use crate::integrate::{check_finds_events, project};
 use crate::point::{Motion, Vector};
 use crate::settings::{Feedback, Settings, SettingsError};
 use crate::space::{ForceId, in_dimension};
@@ -26,7 +26,7 @@ impl Simulation {
     /// Settings out of range; constraints that no positions near by satisfy. Nothing is changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), StepError> {
         settings.check()?;
-        check_switches(&self.system, &settings)?;
+        check_finds_events(&self.system, &settings)?;
         if settings.integrator.projects() && !self.settings.integrator.projects() {
             let before = self.energy().total();
             project(&self.system, &mut self.state, &settings, &mut self.workspace)?;

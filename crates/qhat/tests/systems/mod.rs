@@ -15,7 +15,7 @@ pub const G: f64 = 9.81;
 /// More particles than any test names by place.
 const MOST_IDS: usize = 20_000;
 
-/// The id of the particle at a place, that of any system that has so many.
+/// The id of the particle at a place, the same in every system with that many particles.
 pub fn id(place: usize) -> ParticleId {
     static IDS: LazyLock<Vec<ParticleId>> = LazyLock::new(|| {
         let mut builder = System::builder(Dimension::Two);

@@ -1,4 +1,4 @@
-//! How long a substep may be.
+//! Bounds on the length of a substep.
 //!
 //! - Stability: an explicit method needs h ω < 2. Geometric stiffness |λ_i| |∂²C_i/∂q²| and the stiffness of forces
 //!   bound ω by Gershgorin's theorem, ω² ≤ max_p w_p Σ (row sum of |K| at particle p); for a chain under tension T

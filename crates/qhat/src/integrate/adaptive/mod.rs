@@ -1,13 +1,14 @@
 //! Adaptive methods: a frame in substeps whose length follows an error estimate.
 //!
-//! `substeps.rs` is the frame loop, the same for every method; a method is a [`Stepper`]. `control.rs` says how long
-//! a substep may be, `pair.rs` is the stepper of embedded Runge–Kutta pairs. RATTLE (`integrate/rattle.rs`) and pairs
-//! with events (`integrate/events/`) are the others.
+//! `substeps.rs` is the frame loop, the same for every method; a method is a [`Stepper`]. `control.rs` bounds the
+//! length of a substep. `pair.rs` is the stepper of embedded Runge–Kutta pairs, `pair_frame.rs` their frame. The other
+//! steppers are RATTLE (`integrate/rattle.rs`) and pairs with events (`integrate/events/`).
 
 pub(crate) mod control;
 pub(crate) mod dop853;
 pub(crate) mod dopri5;
 pub(crate) mod pair;
+pub(crate) mod pair_frame;
 mod substeps;
 
 pub(crate) use substeps::{End, Substeps, accepts};
@@ -17,21 +18,9 @@ use crate::drift::Drift;
 use crate::error::StepError;
 use crate::multiplier::Equation;
 use crate::point::Motion;
-use crate::settings::{Feedback, SettingsError};
+use crate::settings::Feedback;
 use crate::state::{Carry, State};
 use crate::system::System;
-
-/// Refuses a frame that would never end, or end before it began.
-///
-/// # Errors
-/// A length that is not finite and positive.
-pub(crate) fn check_length(length: f64) -> Result<(), SettingsError> {
-    if length.is_finite() && length > 0.0 {
-        Ok(())
-    } else {
-        Err(SettingsError::OutOfRange { name: "frame", value: length, range: "finite and positive" })
-    }
-}
 
 /// One method, under way over one frame. It may keep the motion in arrays of its own until `end`.
 ///
@@ -60,7 +49,7 @@ pub(crate) trait Stepper {
     fn write_tried(&self, state: &mut State);
 }
 
-/// How the attempt at one substep ended.
+/// The outcome of the attempt at one substep.
 pub(crate) enum Outcome {
     /// The constraints are met, or the error is too large for them to matter.
     Met(Attempt),
@@ -108,7 +97,7 @@ pub(crate) fn begin<const D: usize>(frame: &mut Frame<'_>, state: &State, carry:
     carry.lambda
 }
 
-/// Rows, forces and the factor of A at the state, wherever they are now.
+/// Evaluates rows and forces at the state, and factors A there.
 pub(crate) fn return_to<const D: usize>(system: &System, state: &State, equation: &mut Equation) {
     let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     equation.apply_forces(system, motion);

@@ -1,26 +1,22 @@
 //! Embedded Runge–Kutta pairs: substeps by the estimated error, each projected onto the constraints.
 
-use super::{Attempt, End, Outcome, Stepper, Substeps, accepts, begin, check_length};
-use crate::chains::{Chains, Projected};
+use super::{Attempt, Outcome, Stepper, accepts};
+use crate::chains::Projected;
 use crate::drift::Drift;
-use crate::error::StepError;
-use crate::integrate::events::EventStepper;
-use crate::integrate::field::{ChainField, Field, GeneralField};
-use crate::integrate::frame::Frame;
+use crate::integrate::field::Field;
 use crate::integrate::runge_kutta::{Combination, Squares, Stages, Tableau, advance};
 use crate::linalg::eight::{Largest, vector_unit};
-use crate::report::{Solver, StepReport};
-use crate::settings::{Feedback, Settings};
+use crate::settings::Settings;
 use crate::state::State;
-use crate::structure::ChainPlan;
 use crate::system::System;
 
 /// Part of the extent of the system below which the way of the fastest particle in one substep counts as rest.
 const AT_REST: f64 = 1e-3;
 
 /// Factor on the error estimate, which is a mean over all coordinates, while a large error may be in a few. With this
-/// factor the default tolerance of 1e-4 left energy errors of 1e-7 to 3e-5 after 2 s of whipping chains; four times
-/// looser, substeps ran against the bound of stability, and chains of 1000 links took more of them.
+/// factor and the default tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100
+/// and 1000 links. At a tolerance of 1e-3 its substeps run against the bound of stability: a chain of 1000 links takes
+/// 1588 of them in place of 830 (`benches/results/workloads.csv`).
 const ERROR_SCALE: f64 = 4.0;
 
 /// A method with an error estimate.
@@ -56,108 +52,11 @@ impl Pair {
 
 /// A pair under way over one frame.
 pub(crate) struct PairStepper<'a, F> {
-    pair: &'a Pair,
+    pub(super) pair: &'a Pair,
     pub(crate) field: F,
     pub(crate) system: &'a System,
     pub(crate) settings: &'a Settings,
     pub(crate) stages: &'a mut Stages,
-}
-
-/// Advances the state by one frame.
-pub(crate) fn frame<const D: usize>(
-    pair: &Pair,
-    frame: &mut Frame<'_>,
-    state: &mut State,
-) -> Result<StepReport, StepError> {
-    carry_on::<D>(pair, frame, state, usize::MAX).map(|(report, _)| report)
-}
-
-/// Advances the state by one frame, or as far as so many substeps go; says whether it is the whole frame. Open chains
-/// are solved by `chains/`; every other system, and chains that become singular on the way, by the general equation.
-pub(crate) fn carry_on<const D: usize>(
-    pair: &Pair,
-    frame: &mut Frame<'_>,
-    state: &mut State,
-    limit: usize,
-) -> Result<(StepReport, bool), StepError> {
-    check_length(frame.length)?;
-    let system = frame.system;
-    let mut substeps = Substeps::new(frame, state).within(limit);
-    substeps.watch = frame.workspace.watch.take();
-    let mut carry = state.carry.take();
-    let mut run = PairFrame { pair, frame, substeps };
-    if let Some(plan) = &system.chains
-        && !carry.as_ref().is_some_and(|carry| carry.deficient)
-    {
-        run.substeps.report.solver = Solver::Chains;
-        match run.along_chains::<D>(plan, state) {
-            Ok(End::Singular) => carry = None,
-            end => {
-                run.frame.workspace.watch = run.substeps.watch.take();
-                return end.map(|end| (run.substeps.finish(state, None), end == End::Whole));
-            }
-        }
-    }
-    run.substeps.report.solver = Solver::Rows;
-    let factorizations = run.frame.factorizations();
-    begin::<D>(run.frame, state, carry);
-    let end = run.by_rows::<D>(state);
-    let PairFrame { frame, mut substeps, .. } = run;
-    // Also after an error, after which `auto` may go on with another method.
-    frame.workspace.watch = substeps.watch.take();
-    let end = end?;
-    if end == End::Whole && system.contacts.is_empty() {
-        // A frame that ran out of work may have ended on a rejected substep: the factor is then that of one of its
-        // stages.
-        frame.workspace.note_factored(state);
-    }
-    substeps.report.factorizations += frame.factorizations() - factorizations;
-    let equation = &frame.workspace.equation;
-    Ok((substeps.finish(state, Some((equation.lambda.clone(), equation))), end == End::Whole))
-}
-
-/// A pair, the frame that it advances by, and the substeps of that frame.
-struct PairFrame<'a, 'f> {
-    pair: &'a Pair,
-    frame: &'a mut Frame<'f>,
-    substeps: Substeps<'f>,
-}
-
-impl PairFrame<'_, '_> {
-    /// The substeps of open chains, eight side by side.
-    fn along_chains<const D: usize>(&mut self, plan: &ChainPlan, state: &mut State) -> Result<End, StepError> {
-        let Frame { system, settings, ref mut workspace, .. } = *self.frame;
-        let mut stages = std::mem::take(&mut workspace.stages);
-        let chains = workspace.chains.get_or_insert_with(|| Chains::new(system, plan));
-        let field = ChainField::<D> { system, plan, chains };
-        let mut stepper = PairStepper { pair: self.pair, field, system, settings, stages: &mut stages };
-        stepper.begin(state);
-        let end = self.substeps.run(&mut stepper, state);
-        workspace.stages = stages;
-        end
-    }
-
-    /// The substeps of any system, which end at events where there are contacts; events are reported in any case.
-    fn by_rows<const D: usize>(&mut self, state: &mut State) -> Result<End, StepError> {
-        let PairFrame { pair, frame, substeps } = self;
-        let Frame { system, settings, length, ref mut workspace } = **frame;
-        workspace.equation.solver.memory.forget();
-        let mut stages = std::mem::take(&mut workspace.stages);
-        let field = GeneralField::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
-        let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages };
-        stepper.begin(state);
-        let end = if system.contacts.is_empty() {
-            substeps.run(&mut stepper, state)
-        } else {
-            EventStepper::begin(stepper, state, length).and_then(|mut stepper| {
-                let end = substeps.run(&mut stepper, state);
-                substeps.report.events.append(&mut stepper.events);
-                end
-            })
-        };
-        workspace.stages = stages;
-        end
-    }
 }
 
 impl<F: Field> Stepper for PairStepper<'_, F> {
@@ -212,7 +111,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
 
 impl<F: Field> PairStepper<'_, F> {
     /// Takes the motion of a state.
-    fn begin(&mut self, state: &State) {
+    pub(super) fn begin(&mut self, state: &State) {
         self.stages.resize(self.field.blocks());
         self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
     }
@@ -237,39 +136,5 @@ impl<F: Field> PairStepper<'_, F> {
             largest = if error.is_nan() { error } else { largest.max(error) };
         }
         largest
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::dop853::DOP853;
-    use super::*;
-    use crate::integrate::Workspace;
-    use crate::space::Dimension;
-    use crate::system::Particle;
-    use crate::{Distance, Gravity};
-
-    /// The work ends on a rejected substep: the next solve must not use the factor of one of its stages.
-    #[test]
-    fn work_that_runs_out_leaves_no_factor_of_a_stage() {
-        let mut builder = System::builder(Dimension::Two);
-        let corners =
-            [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75]].map(|x| builder.particle(Particle::at(format!("{x:?}"), x)));
-        let hook = builder.particle(Particle::at("hook", [-0.6, 0.8]).fixed());
-        for (name, a, b) in [("ab", 0, 1), ("bc", 1, 2), ("ca", 2, 0)] {
-            let length = if name == "ab" { 1.0 } else { 0.8125_f64.sqrt() };
-            builder.constraint(name, Distance::new(corners[a], corners[b], length));
-        }
-        builder.constraint("hanger", Distance::new(hook, corners[0], 1.0));
-        builder.force(Gravity { acceleration: [0.0, -9.81, 0.0] });
-        let (system, start) = builder.build().unwrap();
-        let settings = Settings::default();
-        let (mut state, mut workspace) = (start.clone(), Workspace::new(&system));
-        let mut frame = Frame { system: &system, settings: &settings, workspace: &mut workspace, length: 2.0 };
-        let (report, is_whole) = carry_on::<2>(&DOP853, &mut frame, &mut state, 1).unwrap();
-        assert_eq!((report.substeps, report.rejected, is_whole), (0, 1, false));
-        assert_eq!(state.q, start.q);
-        let expected = Workspace::new(&system).solve::<2>(&system, &state, &Feedback::NONE).lambda.clone();
-        assert_eq!(workspace.solve::<2>(&system, &state, &Feedback::NONE).lambda, expected);
     }
 }

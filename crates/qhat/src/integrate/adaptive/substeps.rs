@@ -7,7 +7,6 @@ use crate::error::StepError;
 use crate::integrate::check_finite;
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
-use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::report::StepReport;
 use crate::settings::Settings;
@@ -30,7 +29,7 @@ pub(crate) fn accepts(error: f64, settings: &Settings) -> bool {
     error <= MISSED * settings.tolerance
 }
 
-/// How far a frame has come.
+/// The place that a frame has come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// To its end.
@@ -69,20 +68,22 @@ pub(crate) struct Substeps<'a> {
     /// The substep to try next [s].
     proposed: f64,
     pub(crate) report: StepReport,
-    pub(crate) watch: Option<TensionWatch>,
+    /// The watch of the workspace, until `finish` or `fail` puts it back.
+    watch: Option<TensionWatch>,
 }
 
 impl<'a> Substeps<'a> {
     /// For a frame that begins at a state, with as many substeps as it takes.
-    pub(crate) fn new(frame: &Frame<'a>, state: &State) -> Self {
+    pub(crate) fn new(frame: &mut Frame<'a>, state: &State) -> Self {
+        let watch = frame.workspace.watch.take();
         let Frame { system, settings, length, .. } = *frame;
         let report = StepReport { smallest_substep: length, ..StepReport::default() };
         let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
         let (done, tried, limit) = (0.0, 0, usize::MAX);
-        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report, watch: None }
+        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report, watch }
     }
 
-    /// The same with no more than so many substeps, or as many as show that they will not do.
+    /// The same with at most `limit` substeps, or as many as show that these will not do.
     pub(crate) fn within(self, limit: usize) -> Self {
         Substeps { limit, ..self }
     }
@@ -225,11 +226,19 @@ impl<'a> Substeps<'a> {
         })
     }
 
-    /// Ends the frame: writes to the state the data that the next frame starts with, and returns the report.
-    /// `general` is λ and the equation, if the frame ended on the general path.
-    pub(crate) fn finish(mut self, state: &mut State, general: Option<(Vec<f64>, &Equation)>) -> StepReport {
-        let (lambda, drives, deficient) = match general {
-            Some((lambda, equation)) => {
+    /// Ends a frame that failed. The next frame, or the method that `auto` goes on with, needs the watch.
+    pub(crate) fn fail(self, frame: &mut Frame<'_>, error: StepError) -> StepError {
+        frame.workspace.watch = self.watch;
+        error
+    }
+
+    /// Ends the frame: writes to the state the data that the next frame starts with, and returns the report. `lambda`
+    /// is λ at the state, if the frame ended on the general path.
+    pub(crate) fn finish(mut self, frame: &mut Frame<'_>, state: &mut State, lambda: Option<Vec<f64>>) -> StepReport {
+        frame.workspace.watch = self.watch;
+        let equation = &frame.workspace.equation;
+        let (lambda, drives, deficient) = match lambda {
+            Some(lambda) => {
                 for warning in equation.warnings(self.system) {
                     self.report.warn(warning);
                 }

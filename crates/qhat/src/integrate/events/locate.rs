@@ -11,15 +11,16 @@
 
 use super::{Attempt, EventStepper, Outcome};
 use crate::contact::{EventCause, first_violated};
+use crate::linalg::eight::LANES;
 use crate::modes::Mode;
 use crate::point::Motion;
 use crate::state::State;
 
-/// How near zero an event function must come that may be on either side of it. It costs an attempt more than 1 would,
-/// and leaves the time of an impact good to 1e-12 of the extent over the speed.
+/// The largest value at the event of an event function that may be on either side of zero there. It costs an attempt
+/// more than 1 would, and leaves the time of an impact good to 1e-12 of the extent over the speed.
 const SHARP: f64 = 0.01;
 
-/// Attempts at one event. The secant took three to nine where it was watched; halving takes forty.
+/// Attempts at one event. Halving alone narrows a bracket of a frame to `SAME_TIME` in 44; the secant is quicker.
 const ATTEMPTS: usize = 60;
 
 /// Length of a bracket, in frames, at which its ends count as the same time.
@@ -88,8 +89,8 @@ impl<const D: usize> EventStepper<'_, D> {
         }
         let stages = &*self.run.stages;
         let coordinates = system.coordinate_count();
-        let mut middle = vec![0.0; stages.q.len() * 8];
-        for (k, middle) in middle.chunks_exact_mut(8).enumerate() {
+        let mut middle = vec![0.0; stages.q.len() * LANES];
+        for (k, middle) in middle.chunks_exact_mut(LANES).enumerate() {
             for (lane, x) in middle.iter_mut().enumerate() {
                 let (q, qd) = (stages.q[k].0[lane], stages.qd[k].0[lane]);
                 let (next_q, next_qd) = (stages.next_q[k].0[lane], stages.next_qd[k].0[lane]);

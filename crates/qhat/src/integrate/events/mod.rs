@@ -1,11 +1,11 @@
 //! EventStepper: an embedded pair whose substeps end at events, where a contact closes, opens, begins or ceases to
 //! slip, and where a constraint breaks.
 //!
-//! Between events the modes of all contacts stand, and a substep is a substep of the pair. Watched are the event
-//! functions of `contact/event_functions.rs`, all at least −1 while the modes are right. If one of them is below −1
-//! at the end of a substep, the substep is tried again with a length at which the first of them is between −1 and 1
-//! (`locate.rs`); there `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn
-//! of slips.
+//! Between events the modes of all contacts stand, and a substep is a substep of the pair. The event functions of
+//! `contact/event_functions.rs` are all at least −1 while the modes are right. If one of them is below −1 at the end of
+//! a substep, the substep is tried again with a length at which none is below −1 and the first is back near zero
+//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn of
+//! slips.
 
 mod locate;
 mod slip;
@@ -42,7 +42,7 @@ const SLOWEST: f64 = 1e-4;
 /// Events of one frame after which no impact bounces any more.
 const BOUNCING: usize = 1000;
 
-/// Events of one frame after which the step fails: so many cannot be real.
+/// Events of one frame after which the step fails: a number that no motion has.
 const TOO_MANY: usize = 20_000;
 
 /// A pair under way over one frame of a system with contacts.
@@ -130,7 +130,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         self.at_start.Cd.clone_from(&equation.rows.Cd);
         self.at_start.lambda.clone_from(&equation.lambda);
         equation.constrain(system, Motion::<D> { q, qd, t });
-        self.normals.begin::<D>(&equation.rows);
+        self.normals.begin(&equation.rows);
         self.write_event_functions(t);
         self.event_functions_at_start.clone_from(&self.event_functions);
         self.count += usize::from(cause.is_some());
@@ -217,9 +217,6 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
             (Err(_), Some(cause)) if h < NO_ANSWER * self.frame => return self.stay(state, cause),
             // A λ that is not a number: friction may have an answer in a shorter substep.
             (Err(Outcome::Met(attempt)), Some(_)) if attempt.error.is_nan() => return Outcome::NotMet,
-            (Err(Outcome::Failed(StepError::NotSatisfied { residual, .. })), Some(_)) if residual.is_nan() => {
-                return Outcome::NotMet;
-            }
             (Err(outcome), _) => return outcome,
         };
         if self.event_functions.iter().any(|&function| function < -1.0) {
@@ -249,7 +246,7 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
             let outcome = self.resolve(state, state.t + h);
             self.failure = outcome.err();
         } else {
-            self.normals.begin::<D>(&self.run.field.workspace.equation.rows);
+            self.normals.begin(&self.run.field.workspace.equation.rows);
             self.event_functions_at_start.clone_from(&self.event_functions);
         }
         state.modes.clone_from(&self.modes);

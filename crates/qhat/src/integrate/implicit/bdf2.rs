@@ -5,8 +5,8 @@
 //! q* = ((1 + ρ)² q − ρ² q₋)/(1 + 2ρ),  q̇* likewise,   h_e = h (1 + ρ)/(1 + 2ρ),   ρ = h/h₋
 //! ```
 //!
-//! q₋ and q̇₋ are the state before the last step of h₋; for equal steps q* = (4 q − q₋)/3 and h_e = 2h/3. Then q̇' onto
-//! Ċ = 0. The first step is one of backward Euler, and so is a step on which Newton's method does not converge soon.
+//! q₋ and q̇₋ are the state before the last step of h₋; for equal steps q* = (4 q − q₋)/3 and h_e = 2h/3. Then q̇' is
+//! projected onto Ċ = 0. The first step is one of backward Euler, and so is a step on which Newton's method does not converge soon.
 //! Source: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, III.5.
 
 use super::{Base, Formula, backward_euler};

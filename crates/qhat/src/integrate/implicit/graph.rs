@@ -20,7 +20,7 @@ pub(super) struct BlockSlot {
     pub(super) edge: usize,
 }
 
-/// Where the entries and edges of one constraint begin.
+/// The first entry and the first edge of one constraint.
 #[derive(Clone, Copy, Debug)]
 struct Own {
     /// Among the entries of J: that of its first particle in its first row.

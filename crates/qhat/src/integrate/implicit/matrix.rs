@@ -24,7 +24,7 @@ use crate::linalg::block::{diagonal, store};
 use crate::point::Motion;
 use crate::system::System;
 
-/// Where and with which multipliers the matrix is assembled.
+/// The motion and the multipliers with which the matrix is assembled.
 #[derive(Clone, Copy)]
 pub(super) struct Linearization<'a, const D: usize> {
     pub(super) system: &'a System,

@@ -17,7 +17,7 @@ use crate::point::Motion;
 use crate::settings::Settings;
 use crate::system::System;
 
-/// Which method: the motion that the step would have without forces.
+/// The motion that the step would have without forces; it says which method the step is of.
 #[derive(Clone, Debug)]
 pub(crate) struct Base {
     /// q* [m].
@@ -57,7 +57,7 @@ pub(super) struct Tried<'a> {
     pub(super) qd: &'a mut [f64],
 }
 
-/// How an iteration ended; q and μ are the nearest iterate.
+/// The end of an iteration; q and μ are the nearest iterate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ending {
     pub(super) has_converged: bool,
@@ -111,7 +111,7 @@ impl Newton {
                 tried.q.copy_from_slice(&self.best_q);
                 self.mu.copy_from_slice(&self.best_mu);
                 miss = self.evaluate::<D>(&aim, tried);
-                // The factor belongs to wherever the iteration went.
+                // The factor belongs to the last iterate, not to the nearest.
                 return Ending { has_converged: false, iterations, is_factored: false, miss };
             }
             is_factored = true;

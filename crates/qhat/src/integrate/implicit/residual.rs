@@ -11,9 +11,8 @@
 use super::newton::{Base, Newton, Tried};
 use crate::drift::attainable;
 use crate::force::Acts;
-use crate::integrate::projection::largest;
 use crate::linalg::NONE;
-use crate::point::{Motion, block, norm};
+use crate::point::{Motion, block, largest, norm};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -41,11 +40,11 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// How far an iterate is from the solution, relative to the accuracy asked for: 1 is just enough.
+/// The distance of an iterate from the solution, relative to the accuracy asked for: 1 is just enough.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Miss {
     pub(super) worst: f64,
-    /// The worst row, with its |C + α λ + α c Ċ| over its scale.
+    /// The worst row, with its |s| over its scale.
     pub(super) row: usize,
     pub(super) relative: f64,
 }
@@ -89,7 +88,7 @@ impl Newton {
                 s[row] = 0.0;
                 continue;
             }
-            // s = −(C + α λ + α c Ċ).
+            // s = −(C + α λ + α c Ċ)/(1 + α c/h_e).
             let soft = &system.softness[row];
             s[row] = if soft.is_rigid() {
                 -rows.C[row]

@@ -220,7 +220,7 @@ fn a_compressed_chain_is_mended() {
     assert!(along.is_finite() && along > 0.0, "{along}");
 }
 
-/// B on two particles and −B between them is the same in one piece and in three, whichever way round the pieces stand.
+/// B on two particles and −B between them is the same in one piece and in three, for either order of the two particles.
 #[test]
 fn a_difference_is_three_blocks() {
     let mut rods = TREE.to_vec();

@@ -5,7 +5,7 @@
 
 use super::newton::{Base, Newton, Tried};
 use crate::energy;
-use crate::point::{Motion, block, dot};
+use crate::point::{Motion, block, dot, largest};
 
 /// Passes of one projection. The factor belongs to a q near by: each pass gains as many digits as J has in common
 /// there, four or more.
@@ -24,7 +24,7 @@ impl Newton {
         tried: &mut Tried<'_>,
     ) -> f64 {
         let system = tried.system;
-        let fastest = tried.qd.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let fastest = largest(tried.qd);
         let mut drives = 0.0;
         for _ in 0..PASSES {
             self.r.fill(0.0);

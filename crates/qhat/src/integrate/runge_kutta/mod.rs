@@ -51,7 +51,7 @@ pub(super) struct Stages {
 }
 
 impl Stages {
-    /// For so many blocks of eight numbers.
+    /// Arrays of a number of blocks of eight numbers.
     pub(super) fn new(blocks: usize) -> Self {
         let array = || vec![F8::ZERO; blocks];
         Stages {
@@ -67,7 +67,7 @@ impl Stages {
         }
     }
 
-    /// The same arrays for another number of blocks; nothing if it is the same.
+    /// Makes the arrays again for another number of blocks, and forgets the first slope.
     pub(super) fn resize(&mut self, blocks: usize) {
         if self.q.len() != blocks || self.slope.is_empty() {
             *self = Stages::new(blocks);
