@@ -2,6 +2,10 @@
 //! negative.
 
 use crate::linalg::block::Block;
+#[cfg(test)]
+use crate::linalg::block::transposed;
+#[cfg(test)]
+use crate::space::ParticleId;
 
 /// The stiffness [N/m] between two particles i and j; with i = j that of one particle on itself.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +27,36 @@ impl<const D: usize> Stiffness<D> {
             Stiffness::Difference(block) => Stiffness::Difference(scaled(block)),
             Stiffness::Definite(block) => Stiffness::Definite(scaled(block)),
             Stiffness::Indefinite(block) => Stiffness::Indefinite(scaled(block)),
+        }
+    }
+}
+
+#[cfg(test)]
+impl<const D: usize> Stiffness<D> {
+    /// Adds all blocks that the stiffness between i and j stands for to a dense matrix.
+    pub(crate) fn add_to(&self, dense: &mut [Vec<f64>], i: ParticleId, j: ParticleId) {
+        let mut put = |(i, j): (ParticleId, ParticleId), sign: f64, block: &Block<D>| {
+            for (k, row) in block.iter().enumerate() {
+                for (l, entry) in row.iter().enumerate() {
+                    dense[i.0 * D + k][j.0 * D + l] += sign * entry;
+                }
+            }
+        };
+        match self {
+            Stiffness::Difference(block) => {
+                put((i, i), 1.0, block);
+                if i != j {
+                    put((j, j), 1.0, block);
+                    put((i, j), -1.0, block);
+                    put((j, i), -1.0, block);
+                }
+            }
+            Stiffness::Definite(block) | Stiffness::Indefinite(block) => {
+                put((i, j), 1.0, block);
+                if i != j {
+                    put((j, i), 1.0, &transposed(block));
+                }
+            }
         }
     }
 }

@@ -68,12 +68,12 @@ pub(crate) trait Holds {
     /// The same constraint in the form that belongs to a formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 
-    /// Why the constraint has no meaning in d dimensions, in words.
+    /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, _dimension: usize) -> Result<(), ConstraintError> {
         Ok(())
     }
 
-    /// What is wrong with the numbers of the constraint, in words.
+    /// `Ok` if the numbers of the constraint are allowed; the error names the number that is not.
     fn check(&self) -> Result<(), ConstraintError>;
 }
 

@@ -43,12 +43,12 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// Why the constraint has no meaning in d dimensions, in words.
+    /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
     }
 
-    /// What is wrong with the numbers of the constraint, in words.
+    /// `Ok` if the numbers of the constraint are allowed; the error names the number that is not.
     fn check(&self) -> Result<(), ConstraintError>;
 }
 
@@ -103,6 +103,23 @@ pub(crate) struct Residual<N> {
     pub(super) C: N,
     /// ∂C/∂t [C/s], zero where nothing is driven.
     pub(super) C_t: N,
+}
+
+/// Number of particles that need no list on the heap. Most kinds name four at most; a rope over pulleys and a closed
+/// surface may name more.
+const FEW: usize = 8;
+
+/// Runs `body` with the particles of a constraint. Newton's method asks for second derivatives many times in a step, so
+/// a short list lies on the stack.
+fn with_particles<S: Smooth, R>(constraint: &S, body: impl FnOnce(&[ParticleId]) -> R) -> R {
+    let mut few = [ParticleId(0); FEW];
+    let mut count = 0;
+    while let Some(particle) = constraint.particle(count) {
+        let Some(place) = few.get_mut(count) else { return body(&Holds::particles(constraint)) };
+        *place = particle;
+        count += 1;
+    }
+    body(&few[..count])
 }
 
 /// Calls `visit(j, k, i, column)` with ∂²C/∂x_i ∂x_jk of one row.
@@ -164,19 +181,20 @@ impl<S: Smooth> Holds for S {
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
-        let particles = Holds::particles(self);
         let mut largest = 0.0_f64;
-        for row in 0..Smooth::row_count(self, D) {
-            // The largest sum over a column bounds the norm.
-            let (mut sum, mut last) = (0.0, (0, 0));
-            second_derivatives(self, &particles, row, motion, &mut |j, k, _, column| {
-                if (j, k) != last {
-                    (sum, last) = (0.0, (j, k));
-                }
-                sum += column.iter().map(|entry| entry.abs()).sum::<f64>();
-                largest = largest.max(sum);
-            });
-        }
+        with_particles(self, |particles| {
+            for row in 0..Smooth::row_count(self, D) {
+                // The largest sum over a column bounds the norm.
+                let (mut sum, mut last) = (0.0, (0, 0));
+                second_derivatives(self, particles, row, motion, &mut |j, k, _, column| {
+                    if (j, k) != last {
+                        (sum, last) = (0.0, (j, k));
+                    }
+                    sum += column.iter().map(|entry| entry.abs()).sum::<f64>();
+                    largest = largest.max(sum);
+                });
+            }
+        });
         largest
     }
 
@@ -186,18 +204,19 @@ impl<S: Smooth> Holds for S {
         lambda: &[f64],
         visit: &mut impl FnMut(usize, usize, Stiffness<D>),
     ) {
-        let particles = Holds::particles(self);
-        for (row, multiplier) in lambda.iter().enumerate() {
-            second_derivatives(self, &particles, row, motion, &mut |j, k, i, column| {
-                if i <= j {
-                    let mut block: Block<D> = zero();
-                    for (line, entry) in block.iter_mut().zip(column) {
-                        line[k] = -multiplier * entry;
+        with_particles(self, |particles| {
+            for (row, multiplier) in lambda.iter().enumerate() {
+                second_derivatives(self, particles, row, motion, &mut |j, k, i, column| {
+                    if i <= j {
+                        let mut block: Block<D> = zero();
+                        for (line, entry) in block.iter_mut().zip(column) {
+                            line[k] = -multiplier * entry;
+                        }
+                        visit(i, j, Stiffness::Indefinite(block));
                     }
-                    visit(i, j, Stiffness::Indefinite(block));
-                }
-            });
-        }
+                });
+            }
+        });
     }
 
     fn formulated(&self, _: Formulation) -> Self {

@@ -1,126 +1,98 @@
-//! Every kind that is written as a residual, with or without its gradient: compares its rows with differences and with
-//! the same constraint written as expressions.
+//! The second derivatives of every kind: the geometric stiffness −Σ λ ∂²C/∂q² against differences of Jᵀ λ, and the
+//! curvature as a bound on the blocks of ∂²C/∂q². No public call shows them. `tests/kinds/` tests the rows themselves.
 
 use super::{
-    Anchor, Constraint, Curve, Custom, Direction, Holds, Layout, Line, OnCircle, OnCurve, OnLine, OnPlane, OnSphere,
-    Plane, Relation, Rows,
+    Anchor, Angle, Area, Constraint, Curve, Custom, Direction, Distance, DistanceForm, ExpressionConstraint, Gears,
+    Holds, Layout, Lengths, Limits, Line, Nail, NailForm, Obstacle, OnCircle, OnCurve, OnEllipse, OnLine, OnPlane,
+    OnSphere, Plane, Relation, Rows, Surface, Volume,
 };
 use crate::driven::Driven;
 use crate::expression::{Expression, Purpose, Scope};
 use crate::hyper::Hyper;
 use crate::point::Motion;
 use crate::space::{Dimension, ParticleId};
-use crate::stiffness::Stiffness;
 
 const PARTICLES: usize = 4;
 /// A time at which no driven value is zero or extreme.
 const T: f64 = 0.37;
-
-fn dimension(d: usize) -> Dimension {
-    if d == 2 { Dimension::Two } else { Dimension::Three }
-}
-
-fn expression(text: &str, purpose: Purpose, d: usize) -> Expression {
-    let particle = |name: &str| ["a", "b", "c", "p"].iter().position(|known| *known == name).map(ParticleId);
-    Expression::parse(text, &Scope::new(purpose, dimension(d), &particle))
-        .unwrap_or_else(|error| panic!("{text}: {error}"))
-}
-
-fn schedule(text: &str) -> Driven {
-    expression(text, Purpose::Time, 2).into()
-}
-
-fn driven(x: &str, y: &str, z: &str) -> [Driven; 3] {
-    [schedule(x), schedule(y), schedule(z)]
-}
 
 const A: ParticleId = ParticleId(0);
 const B: ParticleId = ParticleId(1);
 const OTHER: ParticleId = ParticleId(2);
 const P: ParticleId = ParticleId(3);
 
-/// A kind, the number of dimensions, the constraint, and its rows as expressions if they are short.
-type Case = (&'static str, usize, Constraint, Vec<&'static str>);
+fn expression(text: &str, purpose: Purpose, d: usize) -> Expression {
+    let particle = |name: &str| ["a", "b", "c", "p"].iter().position(|known| *known == name).map(ParticleId);
+    let dimension = if d == 2 { Dimension::Two } else { Dimension::Three };
+    Expression::parse(text, &Scope::new(purpose, dimension, &particle))
+        .unwrap_or_else(|error| panic!("{text}: {error}"))
+}
 
-fn cases() -> Vec<Case> {
+fn driven(x: &str, y: &str, z: &str) -> [Driven; 3] {
+    [x, y, z].map(|text| expression(text, Purpose::Time, 2).into())
+}
+
+/// A curve with these components.
+fn curve(components: &[&str], from: f64, to: f64) -> Curve {
+    let d = components.len();
+    let components = components.iter().map(|text| expression(text, Purpose::Curve, d)).collect();
+    Curve::parametric(components, from, to).unwrap()
+}
+
+/// Constraints with a meaning in the plane and in space.
+fn anywhere(d: usize) -> Vec<Constraint> {
     let point = || driven("sin(t)", "2*t", "0.3 - t^2");
     let turning = || driven("cos(3*t)", "sin(3*t)", "0.2 + t");
-    let radius = || schedule("1 + 0.1*sin(5*t)");
-    let wave = [expression("s", Purpose::Curve, 2), expression("0.3*sin(2*s)", Purpose::Curve, 2)];
+    let radius = || Driven::from(expression("1 + 0.1*sin(5*t)", Purpose::Time, 2));
+    let ball = Surface::Ball { center: [0.3, -0.4, 0.1], radius: 0.5, inside: true };
+    let wavy = |x: &[[Hyper; 3]], t: Hyper| {
+        (x[0][1] * x[1][0]).sin() + x[2][1] * (t - x[1][1]) + x[0][0].powi(3) * x[2][0] + x[0][2] * x[1][2]
+    };
+    let text = expression("length(b - p)*a.x + dot(a, a)*sin(p.y*t)", Purpose::Constraint, d);
     vec![
-        (
-            "center of mass",
-            2,
-            Relation::center_of_mass([(A, 1.0), (B, 2.0), (P, 1.0)], point()).into(),
-            vec!["0.25*a.x + 0.5*b.x + 0.25*p.x - sin(t)", "0.25*a.y + 0.5*b.y + 0.25*p.y - 2*t"],
-        ),
-        ("driven", 3, Relation::driven(P, point()).into(), vec!["p.x - sin(t)", "p.y - 2*t", "p.z - 0.3 + t^2"]),
-        ("direction", 2, Direction { a: A, b: B, along: turning() }.into(), vec!["cross([cos(3*t), sin(3*t)], b - a)"]),
-        ("direction in space", 3, Direction { a: A, b: B, along: turning() }.into(), vec![]),
-        (
-            "on a driven line",
-            2,
-            OnLine { particle: P, line: Line::Through(point(), turning()) }.into(),
-            vec!["cross([cos(3*t), sin(3*t)], p - [sin(t), 2*t])"],
-        ),
-        (
-            "on a driven line in space",
-            3,
-            OnLine { particle: P, line: Line::Through(point(), turning()) }.into(),
-            vec![],
-        ),
-        ("on a line of particles", 2, OnLine::through(P, A, B).into(), vec!["cross(b - a, p - a)/dist(a, b)"]),
-        ("on a line of particles in space", 3, OnLine::through(P, A, B).into(), vec![]),
-        (
-            "on a driven plane",
-            3,
-            OnPlane { particle: P, plane: Plane::Across(point(), turning()) }.into(),
-            vec![
-                "dot([cos(3*t), sin(3*t), 0.2 + t], p - [sin(t), 2*t, 0.3 - t^2])\
-                 /length([cos(3*t), sin(3*t), 0.2 + t])",
-            ],
-        ),
-        (
-            "on a plane of particles",
-            3,
-            OnPlane::through(P, [A, B, OTHER]).into(),
-            vec!["dot(cross(b - a, c - a), p - a)/length(cross(b - a, c - a))"],
-        ),
-        ("driven rod", 3, OnSphere::new(P, A, radius()).into(), vec!["dist(p, a) - 1 - 0.1*sin(5*t)"]),
-        (
-            "on a driven sphere",
-            2,
-            OnSphere::new(P, Anchor::Point(point()), radius()).into(),
-            vec!["dist(p, [sin(t), 2*t]) - 1 - 0.1*sin(5*t)"],
-        ),
-        (
-            "on a circle",
-            3,
-            OnCircle::new(P, A, [1.0, 2.0, 2.0], radius()).into(),
-            vec!["dot([1, 2, 2], p - a)/3", "dist(p, a) - 1 - 0.1*sin(5*t)"],
-        ),
-        (
-            "on a curve",
-            2,
-            OnCurve { particle: P, curve: Curve::parametric(wave.to_vec(), -3.0, 3.0).unwrap() }.into(),
-            vec![],
-        ),
-        (
-            "custom",
-            2,
-            Custom::new([P, A], |x: &[[Hyper; 3]], t: Hyper| (x[0][0] - x[1][0]).hypot(x[0][1] - x[1][1] * t.exp()))
-                .into(),
-            vec!["sqrt((p.x - a.x)^2 + (p.y - a.y*exp(t))^2)"],
-        ),
-        (
-            "custom in space",
-            3,
-            Custom::new([B, P, A], |x: &[[Hyper; 3]], t: Hyper| {
-                (x[0][2] * x[1][0]).sin() + x[2][1] * (t - x[1][1]) + x[0][0].powi(3) * x[2][2]
-            })
-            .into(),
-            vec!["sin(b.z*p.x) + a.y*(t - p.y) + b.x^3*a.z"],
-        ),
+        Distance::new(A, P, 1.3).into(),
+        Distance { form: DistanceForm::Squared, ..Distance::new(P, A, 1.3) }.into(),
+        Nail::new(P, [0.1, 0.2, 0.3]).into(),
+        Nail { form: NailForm::Scalar, ..Nail::new(P, [0.1, 0.2, 0.3]) }.into(),
+        Limits::between(P, B, 0.5, 4.0).into(),
+        Obstacle::new(P, Surface::half_space([3.0, 4.0, 0.0], -1.5)).into(),
+        Obstacle::new(P, ball).into(),
+        Obstacle::new(P, Surface::ball([0.3, -0.4, 0.1], 0.5)).into(),
+        // Beyond a corner of the box.
+        Obstacle::new(P, Surface::block([10.0, -9.0, -9.0], [1.0; 3])).into(),
+        ExpressionConstraint::new(text, &[0.5; 12]).into(),
+        Custom::new([B, P, A], wavy).into(),
+        Relation::center_of_mass([(A, 1.0), (B, 2.0), (P, 1.0)], point()).into(),
+        Lengths::new(&[([A, B], 1.0), ([P, B], 2.0), ([B, A], 0.5)], radius()).into(),
+        Angle::between([A, B], [P, OTHER], radius()).into(),
+        Angle::from_direction([1.0, 2.0, -1.0], [A, P], radius()).into(),
+        Direction { a: A, b: B, along: turning() }.into(),
+        OnLine { particle: P, line: Line::Through(point(), turning()) }.into(),
+        OnLine::through(P, A, B).into(),
+        OnSphere::new(P, A, radius()).into(),
+        OnSphere::new(P, Anchor::Point(point()), radius()).into(),
+    ]
+}
+
+fn in_plane() -> Vec<Constraint> {
+    let half = driven("1 + 0.1*sin(5*t)", "0.7 + t", "0");
+    let [along, across, _] = half;
+    vec![
+        Gears::mesh([[A, B], [OTHER, P]], [3, -2], 0.3).into(),
+        Gears::rack([A, B], P, [3.0, 4.0], 0.5, 0.3).into(),
+        Area { corners: vec![A, B, P, OTHER], area: 1.0.into() }.into(),
+        OnEllipse { particle: P, center: A.into(), along: [3.0, 4.0, 0.0], half: [along, across] }.into(),
+        OnCurve { particle: P, curve: curve(&["s", "0.3*sin(2*s)"], -3.0, 3.0) }.into(),
+    ]
+}
+
+fn in_space() -> Vec<Constraint> {
+    let (point, normal) = (driven("sin(t)", "2*t", "0.3 - t^2"), driven("cos(3*t)", "sin(3*t)", "0.2 + t"));
+    vec![
+        Volume::tetrahedron([A, B, OTHER, P], 1.0).into(),
+        OnPlane { particle: P, plane: Plane::Across(point, normal) }.into(),
+        OnPlane::through(P, [A, B, OTHER]).into(),
+        OnCircle::new(P, A, [1.0, 2.0, 2.0], 1.0).into(),
     ]
 }
 
@@ -141,167 +113,114 @@ fn places<const D: usize>(seed: u64) -> Vec<f64> {
     apart.iter().enumerate().map(|(i, x)| corners[i / D][i % D] + 0.3 * x).collect()
 }
 
-struct Evaluated {
-    C: Vec<f64>,
-    Cd: Vec<f64>,
-    gamma: Vec<f64>,
-    Ct: Vec<f64>,
-    J: Vec<f64>,
-}
-
-fn evaluated<const D: usize>(constraint: &Constraint, q: &[f64], qd: &[f64], t: f64) -> Evaluated {
+/// J at positions q, row after row.
+fn jacobian<const D: usize>(constraint: &Constraint, q: &[f64]) -> Vec<f64> {
     let mut rows = Rows::new(Layout::new([constraint].into_iter(), D), D, PARTICLES);
-    rows.evaluate::<D>([constraint].into_iter(), Motion { q, qd, t });
-    let Rows { C, Cd, gamma, Ct, J } = rows;
-    Evaluated { C, Cd, gamma, Ct, J: J.to_dense() }
+    rows.evaluate::<D>([constraint].into_iter(), Motion { q, qd: q, t: T });
+    rows.J.to_dense()
 }
 
-/// q + τ q̇.
-fn moved(q: &[f64], qd: &[f64], tau: f64) -> Vec<f64> {
-    q.iter().zip(qd).map(|(x, v)| x + tau * v).collect()
+/// −Σ λ ∂²C/∂q² as the constraint gives it.
+fn stiffness<const D: usize>(constraint: &Constraint, q: &[f64], lambda: &[f64]) -> Vec<Vec<f64>> {
+    let mut dense = vec![vec![0.0; q.len()]; q.len()];
+    let particles = constraint.particles();
+    constraint.geometric_stiffness::<D>(Motion { q, qd: q, t: T }, lambda, &mut |i, j, stiffness| {
+        assert!(i <= j && j < particles.len(), "{}: block {i}, {j}", constraint.kind());
+        stiffness.add_to(&mut dense, particles[i], particles[j]);
+    });
+    dense
 }
 
-fn close(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(actual.len(), expected.len(), "{what}");
-    for (a, e) in actual.iter().zip(expected) {
-        assert!((a - e).abs() <= tolerance, "{what}: {actual:?} {expected:?}");
-    }
-}
-
-/// Central differences over ±1e-5 are good to h² f‴/6, 2e-11 times a third derivative of some hundreds, and to ε/h =
-/// 1e-11. The comparison with expressions is much closer.
+/// Step of the central differences [m]. They are good to H² f‴/6, 2e-11 times a third derivative of some hundreds, and
+/// to ε/H = 1e-11 of numbers of some tens.
 const H: f64 = 1e-5;
 const GOOD: f64 = 3e-7;
 
-fn slope(one: &[f64], other: &[f64]) -> Vec<f64> {
-    one.iter().zip(other).map(|(one, other)| (one - other) / (2.0 * H)).collect()
+/// Column j of −Σ λ ∂²C/∂q² by differences of Jᵀ λ.
+fn by_differences<const D: usize>(constraint: &Constraint, q: &[f64], lambda: &[f64], j: usize) -> Vec<f64> {
+    let pull = |by: f64| -> Vec<f64> {
+        let mut moved = q.to_vec();
+        moved[j] += by;
+        let J = jacobian::<D>(constraint, &moved);
+        (0..q.len()).map(|i| lambda.iter().enumerate().map(|(row, l)| -l * J[row * q.len() + i]).sum()).collect()
+    };
+    pull(H).iter().zip(pull(-H)).map(|(ahead, behind)| (ahead - behind) / (2.0 * H)).collect()
 }
 
-fn against_differences<const D: usize>(name: &str, constraint: &Constraint, q: &[f64], qd: &[f64]) {
-    let at = evaluated::<D>(constraint, q, qd, T);
-    let along = |tau: f64| evaluated::<D>(constraint, &moved(q, qd, tau), qd, T + tau);
-    close(&format!("{name}: rate"), &at.Cd, &slope(&along(H).C, &along(-H).C), GOOD);
-    close(&format!("{name}: gamma"), &at.gamma, &slope(&along(H).Cd, &along(-H).Cd), GOOD);
-    let later = |tau: f64| evaluated::<D>(constraint, q, qd, T + tau).C;
-    close(&format!("{name}: time"), &at.Ct, &slope(&later(H), &later(-H)), GOOD);
-
-    // −λ ∂²C/∂q² against differences of Jᵀλ, and J against differences of C.
-    let n = q.len();
-    let lambda = numbers(at.C.len(), 5);
-    let mut stiffness = vec![0.0; n * n];
-    let particles = constraint.particles();
-    constraint.geometric_stiffness::<D>(Motion { q, qd, t: T }, &lambda, &mut |i, j, block| {
-        let Stiffness::Indefinite(block) = block else { panic!("{name}: a sign is known") };
-        for (k, row) in block.iter().enumerate() {
-            for (l, entry) in row.iter().enumerate() {
-                let (row, column) = (particles[i].0 * D + k, particles[j].0 * D + l);
-                stiffness[row * n + column] += entry;
-                if i < j {
-                    stiffness[column * n + row] += entry;
-                }
-            }
+fn check<const D: usize>(constraint: &Constraint, q: &[f64]) {
+    let name = constraint.kind();
+    let m = constraint.row_count(D);
+    let lambda = numbers(m, 5);
+    let dense = stiffness::<D>(constraint, q, &lambda);
+    for (j, row) in dense.iter().enumerate() {
+        for (i, (entry, expected)) in row.iter().zip(by_differences::<D>(constraint, q, &lambda, j)).enumerate() {
+            assert!((entry - expected).abs() <= GOOD, "{name}, D = {D}: K[{i}][{j}] = {entry}, not {expected}");
         }
-    });
-    for j in 0..n {
-        let axis: Vec<f64> = (0..n).map(|k| if k == j { 1.0 } else { 0.0 }).collect();
-        let shifted = |tau: f64| evaluated::<D>(constraint, &moved(q, &axis, tau), qd, T);
-        let (one, other) = (shifted(H), shifted(-H));
-        let column: Vec<f64> = at.J.iter().skip(j).step_by(n).copied().collect();
-        close(&format!("{name}: J"), &column, &slope(&one.C, &other.C), GOOD);
-        let turn = slope(&one.J, &other.J);
-        let pull: Vec<f64> =
-            (0..n).map(|i| -lambda.iter().enumerate().map(|(row, l)| l * turn[row * n + i]).sum::<f64>()).collect();
-        close(&format!("{name}: stiffness"), &stiffness[j * n..][..n], &pull, GOOD);
+    }
+    let bound = constraint.curvature::<D>(Motion { q, qd: q, t: T });
+    assert!(bound.is_finite());
+    let direction = numbers(D, 9);
+    let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for row in 0..m {
+        let alone: Vec<f64> = (0..m).map(|k| if k == row { -1.0 } else { 0.0 }).collect();
+        let second = stiffness::<D>(constraint, q, &alone);
+        for (i, j) in (0..PARTICLES).flat_map(|i| (0..PARTICLES).map(move |j| (i, j))) {
+            let entry = |k: usize| (0..D).map(|l| second[i * D + k][j * D + l] * direction[l]).sum();
+            let turned: Vec<f64> = (0..D).map(entry).collect();
+            // Roundoff of a block of some tens.
+            let most = bound * size(&direction) + 1e-12;
+            assert!(size(&turned) <= most, "{name}, D = {D}: block {i}, {j} is above its bound {bound}");
+        }
     }
 }
 
-fn against_expressions<const D: usize>(name: &str, constraint: &Constraint, texts: &[&str], q: &[f64], qd: &[f64]) {
-    let at = evaluated::<D>(constraint, q, qd, T);
-    // Roundoff of some dozens of operations on numbers up to 20.
-    let roundoff = 3e-13;
-    for (row, text) in texts.iter().enumerate() {
-        let twin = expression(text, Purpose::Constraint, D);
-        let mut blocks = vec![0.0; twin.gradient_len()];
-        let (jet, Ct) = twin.jet_and_gradient(q, qd, T, &mut blocks);
-        let mut J = vec![0.0; q.len()];
-        for (particle, block) in twin.particles().iter().zip(blocks.chunks(D)) {
-            J[particle.0 * D..][..D].copy_from_slice(block);
-        }
-        let ours = [at.C[row], at.Cd[row], at.gamma[row], at.Ct[row]];
-        close(&format!("{name}: typed"), &ours, &[jet.value, jet.first, jet.second, Ct], roundoff);
-        close(&format!("{name}: J as typed"), &at.J[row * q.len()..][..q.len()], &J, roundoff);
-    }
-}
-
-fn check<const D: usize>((name, _, constraint, texts): &Case) {
+#[test]
+fn stiffness_and_curvature_of_every_kind_agree_with_differences_of_J() {
+    let (plane, space) = ([anywhere(2), in_plane()].concat(), [anywhere(3), in_space()].concat());
     for seed in 1..=5 {
-        let (mut q, qd) = (places::<D>(seed), numbers(PARTICLES * D, seed + 100));
-        if let Constraint::OnCurve(OnCurve { curve, .. }) = constraint {
-            // Beside the wire, well within its radius of curvature, 0.8 m.
-            let on = curve.point(q[P.0 * D]);
-            (0..D).for_each(|k| q[P.0 * D + k] = on[k] + 0.1 * qd[k]);
+        for constraint in &plane {
+            let mut q = places::<2>(seed);
+            if let Constraint::OnCurve(OnCurve { curve, .. }) = constraint {
+                // Beside the wire, well within its radius of curvature, 0.8 m.
+                let (on, beside) = (curve.point(q[P.0 * 2]), numbers(2, seed));
+                (0..2).for_each(|k| q[P.0 * 2 + k] = on[k] + 0.1 * beside[k]);
+            }
+            check::<2>(constraint, &q);
         }
-        against_differences::<D>(name, constraint, &q, &qd);
-        against_expressions::<D>(name, constraint, texts, &q, &qd);
+        for constraint in &space {
+            check::<3>(constraint, &places::<3>(seed));
+        }
     }
+    let tried: Vec<&str> = plane.iter().chain(&space).map(Constraint::kind).collect();
+    let missing: Vec<_> = Constraint::KINDS.iter().filter(|kind| !tried.contains(kind)).collect();
+    assert!(missing.is_empty(), "add {missing:?} to the constraints that are tried here");
 }
 
+/// In space the stiffness of a wire leaves out w·c‴, so it is exact on the wire.
 #[test]
-fn rows_are_what_differences_and_expressions_say() {
-    for case in &cases() {
-        if case.1 == 2 { check::<2>(case) } else { check::<3>(case) }
-    }
-}
-
-/// In space γ and the stiffness of a wire leave out w·c‴, so they are exact on the wire; so is the foot of a spline.
-#[test]
-fn rows_of_a_wire_in_space_are_exact_on_it() {
-    let texts = ["cos(s)", "sin(s)", "0.2*s"];
-    let helix = Curve::parametric(texts.map(|text| expression(text, Purpose::Curve, 3)).to_vec(), -7.0, 7.0).unwrap();
+fn stiffness_of_a_wire_in_space_is_exact_on_the_wire() {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [1.5, 2.0, -0.3], [0.2, 1.6, 0.1], [-0.8, 0.9, 0.5]];
+    let helix = curve(&["cos(s)", "sin(s)", "0.2*s"], -7.0, 7.0);
     let spline = Curve::through(&points, true).unwrap();
     let bent = Curve::polyline(&points, 0.3, true).unwrap();
-    let places =
-        [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1), (&bent, 0.5), (&bent, 0.95)];
-    for (curve, at) in places {
-        let constraint = Constraint::from(OnCurve { particle: P, curve: curve.clone() });
-        let (mut q, qd) = (numbers(PARTICLES * 3, 1), numbers(PARTICLES * 3, 2));
-        q[P.0 * 3..].copy_from_slice(&curve.point(at));
-        against_differences::<3>("wire", &constraint, &q, &qd);
-        // The position itself is rounded, hence 1e-15.
-        close("wire: C", &evaluated::<3>(&constraint, &q, &qd, T).C, &[0.0, 0.0], 1e-15);
+    for (curve, s) in
+        [(&helix, -2.2), (&helix, 0.4), (&helix, 5.9), (&spline, 0.6), (&spline, 4.1), (&bent, 0.5), (&bent, 0.95)]
+    {
+        let mut q = places::<3>(1);
+        q[P.0 * 3..].copy_from_slice(&curve.point(s));
+        check::<3>(&OnCurve { particle: P, curve: curve.clone() }.into(), &q);
     }
 }
 
-/// In the plane a wire of straight pieces and arcs is exact beside itself, too.
+/// In the plane the stiffness of straight pieces and arcs is exact beside the wire, too.
 #[test]
-fn rows_of_a_bent_wire_are_exact_beside_it() {
+fn stiffness_of_a_bent_wire_in_the_plane_is_exact_beside_the_wire() {
     let points = [[0.0; 3], [2.0, 0.0, 0.0], [2.5, 2.0, 0.0], [-1.0, 2.5, 0.0]];
     let curve = Curve::polyline(&points, 0.8, false).unwrap();
     // On a straight piece, on both arcs, and beyond the ends; 0.1 m to either side of an arc of 0.8 m.
-    for (i, at) in [-1.0, 0.5, 1.9, 3.2, 7.0].into_iter().enumerate() {
-        let constraint = Constraint::from(OnCurve { particle: P, curve: curve.clone() });
-        let (mut q, qd) = (numbers(PARTICLES * 2, 1), numbers(PARTICLES * 2, 2));
-        let place = curve.point(at);
-        (0..2).for_each(|k| q[P.0 * 2 + k] = place[k] + 0.1 * numbers(2, i as u64)[k]);
-        against_differences::<2>("bent wire", &constraint, &q, &qd);
+    for (i, s) in [-1.0, 0.5, 1.9, 3.2, 7.0].into_iter().enumerate() {
+        let (mut q, place, beside) = (places::<2>(1), curve.point(s), numbers(2, i as u64));
+        (0..2).for_each(|k| q[P.0 * 2 + k] = place[k] + 0.1 * beside[k]);
+        check::<2>(&OnCurve { particle: P, curve: curve.clone() }.into(), &q);
     }
-}
-
-/// The numbers stay finite where a direction does not exist and where the foot is about to jump.
-#[test]
-fn singular_places_give_finite_numbers() {
-    let finite = |constraint: &Constraint, q: &[f64]| {
-        let at = evaluated::<2>(constraint, q, &numbers(PARTICLES * 2, 3), T);
-        let all = [at.C, at.Cd, at.gamma, at.Ct, at.J].concat();
-        assert!(all.iter().all(|number| number.is_finite()), "{all:?}");
-    };
-    finite(&OnSphere::new(P, A, 1.0).into(), &[0.0; PARTICLES * 2]);
-    let wire = |x: &str, y: &str| {
-        let components = [x, y].map(|text| expression(text, Purpose::Curve, 2)).to_vec();
-        Constraint::from(OnCurve { particle: P, curve: Curve::parametric(components, 0.0, 6.0).unwrap() })
-    };
-    // The centre of a circle, and the cusp of a cycloid.
-    finite(&wire("cos(s)", "sin(s)"), &[0.0; PARTICLES * 2]);
-    finite(&wire("s - sin(s)", "cos(s) - 1"), &[0.0; PARTICLES * 2]);
 }

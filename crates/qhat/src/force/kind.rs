@@ -16,8 +16,9 @@ pub(crate) trait Acts {
     /// Power of the part that has no potential [W]; negative if it takes energy from the particles.
     fn power<const D: usize>(&self, motion: Motion<'_, D>) -> f64;
 
-    /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with bounds on the row sums of −∂Q/∂q and −∂Q/∂q̇.
-    /// The bounds limit the step of an explicit method.
+    /// Calls `bound(particle, stiffness [N/m], damping [N·s/m])` with bounds on the row sums of −∂Q/∂q and −∂Q/∂q̇: the
+    /// sum of the norms of the blocks of a particle, or the largest sum of the entries of one component. The bounds
+    /// limit the step of an explicit method.
     fn stiffness<const D: usize>(&self, motion: Motion<'_, D>, bound: &mut impl FnMut(ParticleId, f64, f64));
 
     /// The arguments that the force depends on between two changes of its numbers.
@@ -40,7 +41,7 @@ pub(crate) trait Acts {
     /// The particles that the force names, each once; empty if it acts on all.
     fn particles(&self) -> Vec<ParticleId>;
 
-    /// What is wrong with the numbers of the force, in words.
+    /// `Ok` if the numbers of the force are allowed; the error names the number that is not.
     fn check(&self) -> Result<(), ForceError>;
 }
 

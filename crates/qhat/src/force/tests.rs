@@ -1,9 +1,10 @@
-//! Compares every kind of force with differences: Q with the potential, the tangent and its bound with Q, and the power
-//! with both.
+//! Every kind of force against differences: Q against the potential, the tangent and its bound against Q, and the power
+//! against both.
 
 use super::*;
+use crate::expression::{Expression, Purpose, Scope};
 use crate::hyper::Hyper;
-use crate::linalg::block::{diagonal, outer, plus, transposed};
+use crate::linalg::block::{diagonal, outer, plus};
 use crate::space::Dimension;
 
 /// Pseudo-random numbers in [−1, 1), the same on every machine.
@@ -28,15 +29,29 @@ const T: f64 = 0.4;
 const STEP: f64 = 3e-6;
 const CLOSE: f64 = 1e-6;
 
-/// Forces that belong together, and whether they all have potentials when the particles are at rest.
+/// Forces that belong together.
 struct Case {
     name: &'static str,
     forces: Vec<Force>,
+    /// Whether they all have potentials when the particles are at rest.
     is_conservative: bool,
 }
 
 fn case(name: &'static str, force: impl Into<Force>, is_conservative: bool) -> Case {
     Case { name, forces: vec![force.into()], is_conservative }
+}
+
+fn expression(text: &str, purpose: Purpose, d: usize) -> Expression {
+    let particle = |name: &str| ["a", "b", "c", "d"].iter().position(|known| *known == name).map(ParticleId);
+    let dimension = if d == 2 { Dimension::Two } else { Dimension::Three };
+    Expression::parse(text, &Scope::new(purpose, dimension, &particle)).unwrap()
+}
+
+/// A force on c that depends on the positions and velocities of c and a.
+fn typed_force(d: usize) -> Case {
+    let texts = ["sin(a.x*c.y) - 0.4*c.vx", "c.x^2 - 0.3*a.vy*t", "exp(c.x/3) - 0.2*c.vz"];
+    let components = texts[..d].iter().map(|text| expression(text, Purpose::Force, d)).collect();
+    case("force as typed", ExpressionForce { particle: ParticleId(2), components }, false)
 }
 
 fn cases<const D: usize>() -> Vec<Case> {
@@ -72,6 +87,9 @@ fn cases<const D: usize>() -> Vec<Case> {
         case("cubic", cubic, true),
         case("torsion", torsion(1.1), true),
         case("straight", torsion(std::f64::consts::PI), true),
+        case("point force", PointForce::new(b, [1.5, -0.4, 2.0]), true),
+        case("potential as typed", ExpressionPotential { potential: expression(HILLS, Purpose::Potential, D) }, true),
+        typed_force(D),
         case("custom", CustomForce::new([c, a, d], hills), true),
         Case { name: "ring", forces: ring, is_conservative: true },
         Case { name: "mesh", forces: mesh, is_conservative: true },
@@ -81,7 +99,9 @@ fn cases<const D: usize>() -> Vec<Case> {
     all.into_iter().chain(in_space).collect()
 }
 
-/// A potential of three particles.
+/// A potential of three particles, as text and as a function.
+const HILLS: &str = "sin(c.x*a.y) + (c.y - d.x)^2*a.x + exp(d.y)";
+
 fn hills(x: &[[Hyper; 3]], _: Hyper) -> Hyper {
     let [c, a, d] = [x[0], x[1], x[2]];
     (c[0] * a[1]).sin() + (c[1] - d[0]).powi(2) * a[0] + d[1].exp() * c[2].cos()
@@ -125,38 +145,14 @@ fn tangent<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) -> Vec<Vec<f64>> 
         force.tangent(Motion::<D> { q, qd, t: T }, RATE, &mut |i, j, stiffness| {
             assert!(
                 i == j || (named.contains(&i) && named.contains(&j)),
-                "{}: couples what it does not name",
+                "{}: couples a particle that it does not name",
                 case.name
             );
-            let put = |to: &mut Vec<Vec<f64>>, (i, j): (ParticleId, ParticleId), sign: f64, block: [[f64; D]; D]| {
-                for row in 0..D {
-                    for column in 0..D {
-                        to[i.0 * D + row][j.0 * D + column] += sign * block[row][column];
-                    }
-                }
-            };
+            stiffness.add_to(&mut dense, i, j);
             match stiffness {
-                Stiffness::Difference(block) => {
-                    put(&mut dense, (i, i), 1.0, block);
-                    if i != j {
-                        put(&mut dense, (j, j), 1.0, block);
-                        put(&mut dense, (i, j), -1.0, block);
-                        put(&mut dense, (j, i), -1.0, block);
-                    }
-                    assert_one_sign(case.name, &block);
-                }
-                Stiffness::Definite(block) | Stiffness::Indefinite(block) => {
-                    let both = |to: &mut Vec<Vec<f64>>| {
-                        put(to, (i, j), 1.0, block);
-                        if i != j {
-                            put(to, (j, i), 1.0, transposed(&block));
-                        }
-                    };
-                    both(&mut dense);
-                    if matches!(stiffness, Stiffness::Definite(_)) {
-                        both(&mut definite);
-                    }
-                }
+                Stiffness::Difference(block) => assert_one_sign(case.name, &block),
+                Stiffness::Definite(_) => stiffness.add_to(&mut definite, i, j),
+                Stiffness::Indefinite(_) => {}
             }
         });
     }
@@ -165,7 +161,7 @@ fn tangent<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) -> Vec<Vec<f64>> 
         let x = numbers.vector(q.len());
         let product = |row: &Vec<f64>| row.iter().zip(&x).map(|(k, x)| k * x).sum::<f64>();
         let form: f64 = definite.iter().zip(&x).map(|(row, x)| x * product(row)).sum();
-        assert!(form > -1e-10, "{}: what it calls definite is not: {form}", case.name);
+        assert!(form > -1e-10, "{}: the blocks called definite are not: {form}", case.name);
     }
     dense
 }
@@ -216,9 +212,12 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
     let by_position = minus_slopes(q, |q| case.force::<D>(q, &still));
     let by_velocity = minus_slopes(&still, |qd| case.force::<D>(q, qd));
     let dense = tangent::<D>(case, q, &still);
+    // The force as typed gives the symmetric part alone.
+    let is_typed = matches!(case.forces[..], [Force::ExpressionForce(_)]);
     for j in 0..q.len() {
         for i in 0..q.len() {
-            let difference = by_position[j][i] + RATE * by_velocity[j][i];
+            let full = |i: usize, j: usize| by_position[j][i] + RATE * by_velocity[j][i];
+            let difference = if is_typed { 0.5 * (full(i, j) + full(j, i)) } else { full(i, j) };
             let entry = dense[i][j];
             assert!(
                 (entry - difference).abs() < 10.0 * CLOSE,
@@ -234,13 +233,21 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
             bounds[id.0].1 += damping;
         });
     }
+    // The forces that a user writes bound each component of a row, the others the norm of the row.
+    let [first, ..] = &case.forces[..] else { panic!("{name}: no force") };
+    let written = ["ExpressionForce", "ExpressionPotential", "CustomForce"];
+    let is_written = written.contains(&first.kind());
     let mut numbers = Numbers(7);
     for _ in 0..50 {
         let x = unit_vectors::<D>(&mut numbers);
         for (i, (stiffness, damping)) in bounds.iter().enumerate() {
             let row = |slopes: &[Vec<f64>]| {
                 let sums = (0..D).map(|k| (0..x.len()).map(|j| slopes[j][i * D + k] * x[j]).sum::<f64>());
-                sums.map(|sum| sum * sum).sum::<f64>().sqrt()
+                if is_written {
+                    sums.map(f64::abs).fold(0.0, f64::max)
+                } else {
+                    sums.map(|sum| sum * sum).sum::<f64>().sqrt()
+                }
             };
             assert!(row(&by_position) <= stiffness + CLOSE, "{name}, D = {D}: above its bound {stiffness}");
             assert!(row(&by_velocity) <= damping + CLOSE, "{name}, D = {D}: above its bound {damping}");
@@ -256,6 +263,14 @@ fn unit_vectors<const D: usize>(numbers: &mut Numbers) -> Vec<f64> {
         x.iter_mut().for_each(|x| *x /= length);
     }
     x
+}
+
+#[test]
+fn every_kind_of_force_has_a_case() {
+    let cases = cases::<3>();
+    let tried: Vec<&str> = cases.iter().flat_map(|case| &case.forces).map(Force::kind).collect();
+    let missing: Vec<_> = Force::KINDS.iter().filter(|kind| !tried.contains(kind)).collect();
+    assert!(missing.is_empty(), "add {missing:?} to the cases of this file");
 }
 
 #[test]

@@ -207,6 +207,11 @@ impl Clock {
         if self.drive == "0" { self.start.into() } else { self.of("S") }
     }
 
+    /// The time after the start from which t counts [s].
+    pub(crate) fn later(&self) -> f64 {
+        self.later
+    }
+
     /// A function of t.
     pub(crate) fn of(&self, text: &str) -> Driven {
         parse(&self.text(text), Purpose::Time, 2).into()

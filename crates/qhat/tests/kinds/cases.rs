@@ -8,15 +8,16 @@ use qhat::{
     Purpose, Relation, Surface, Volume, rigid_rods,
 };
 
-/// The kinds by the numbers of dimensions they can be in; those behind `equality` hold C = 0 over a motion. A test
-/// fails where a kind is missing: name a new kind here, then add its cases.
+/// The kinds by the numbers of dimensions they can be in; the kinds behind `equality` hold C = 0 over a motion. The test
+/// below fails if a kind is missing: name a new kind here, then add its cases.
 macro_rules! kinds {
     ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
         /// Name, dimensions, and whether it is an equality.
         pub(super) const KINDS: &[(&str, &[usize], bool)] =
             &[$($((stringify!($equality), &$dimensions, true),)* $((stringify!($other), &$dimensions, false),)*)*];
 
-        /// A name that is only in the list does not compile; a kind that the list lacks fails.
+        /// The match does not compile if the list names a kind that the engine lacks. The test fails if the list lacks a
+        /// kind of the engine.
         #[test]
         fn the_list_names_every_kind_of_the_engine() {
             fn kind(constraint: &Constraint) -> &'static str {
@@ -152,7 +153,7 @@ pub(crate) const CASES: &[Case] = &[
         "driven direction",
         2,
         &[],
-        |t| vec![Direction { a: P[0], b: P[1], along: turning(t, 0.0) }.into()],
+        |t| vec![Direction { a: P[0], b: P[1], along: turning(t) }.into()],
         &["cross([cos(t), sin(t)], p1 - p0)"],
     )
     .anywhere(),
@@ -160,8 +161,8 @@ pub(crate) const CASES: &[Case] = &[
         "driven direction in space",
         3,
         &[],
-        |t| vec![Direction { a: P[0], b: P[1], along: turning(t, 0.2) }.into()],
-        &["sin(t)*(p1.x - p0.x) - cos(t)*(p1.y - p0.y)", "0.2*(p1.x - p0.x) - cos(t)*(p1.z - p0.z)"],
+        |t| vec![Direction { a: P[0], b: P[1], along: rising(t) }.into()],
+        &["sin(t)*(p1.x - p0.x) - cos(t)*(p1.y - p0.y)", "(0.2 + t/5)*(p1.x - p0.x) - cos(t)*(p1.z - p0.z)"],
     )
     .other_rows(),
     twin(
@@ -186,9 +187,8 @@ pub(crate) const CASES: &[Case] = &[
         2,
         &[(2, [0.4, 0.0, 0.0])],
         |_| vec![OnLine::through(P[2], P[0], P[1]).into()],
-        &["cross(p1 - p0, p2 - p0)"],
+        &["cross(p1 - p0, p2 - p0)/dist(p0, p1)"],
     )
-    .other_rows()
     .anywhere(),
     twin(
         "line through particles in space",
@@ -205,11 +205,7 @@ pub(crate) const CASES: &[Case] = &[
         "driven line",
         2,
         &[],
-        |t| {
-            vec![
-                OnLine { particle: P[1], line: Line::Through([0.0.into(), t.s(), 0.0.into()], turning(t, 0.0)) }.into(),
-            ]
-        },
+        |t| vec![OnLine { particle: P[1], line: Line::Through([0.0.into(), t.s(), 0.0.into()], turning(t)) }.into()],
         &["cross([cos(t), sin(t)], p1 - [0, 0.1*sin(2*t)^2])"],
         PUSH,
     )
@@ -218,12 +214,8 @@ pub(crate) const CASES: &[Case] = &[
         "driven line in space",
         3,
         &[],
-        |t| {
-            vec![
-                OnLine { particle: P[1], line: Line::Through([t.s(), 0.0.into(), 0.0.into()], turning(t, 0.2)) }.into(),
-            ]
-        },
-        &["sin(t)*(p1.x - 0.1*sin(2*t)^2) - cos(t)*p1.y", "0.2*(p1.x - 0.1*sin(2*t)^2) - cos(t)*p1.z"],
+        |t| vec![OnLine { particle: P[1], line: Line::Through([t.s(), 0.0.into(), 0.0.into()], rising(t)) }.into()],
+        &["sin(t)*(p1.x - 0.1*sin(2*t)^2) - cos(t)*p1.y", "(0.2 + t/5)*(p1.x - 0.1*sin(2*t)^2) - cos(t)*p1.z"],
         PUSH,
     )
     .other_rows(),
@@ -241,9 +233,8 @@ pub(crate) const CASES: &[Case] = &[
         3,
         &[(3, [0.4, -0.55, 0.15])],
         |_| vec![OnPlane::through(P[3], [P[0], P[1], P[2]]).into()],
-        &["volume(p0, p1, p2, p3)"],
-    )
-    .other_rows(),
+        &["dot(cross(p1 - p0, p2 - p0), p3 - p0)/length(cross(p1 - p0, p2 - p0))"],
+    ),
     driven(
         "driven plane",
         3,
@@ -252,10 +243,9 @@ pub(crate) const CASES: &[Case] = &[
             let normal = [t.of("sin(t)"), 1.0.into(), 0.3.into()];
             vec![OnPlane { particle: P[1], plane: Plane::Across([0.0.into(), t.s(), 0.0.into()], normal) }.into()]
         },
-        &["sin(t)*p1.x + p1.y - 0.1*sin(2*t)^2 + 0.3*p1.z"],
+        &["(sin(t)*p1.x + p1.y - 0.1*sin(2*t)^2 + 0.3*p1.z)/length([sin(t), 1, 0.3])"],
         PUSH,
-    )
-    .other_rows(),
+    ),
     twin(
         "sphere",
         3,
@@ -283,18 +273,16 @@ pub(crate) const CASES: &[Case] = &[
         3,
         &[(1, [0.8, -0.4, 0.0])],
         |t| vec![OnCircle::new(P[1], [0.0; 3], [1.0, 2.0, 2.0], t.s()).into()],
-        &["p1.x + 2*p1.y + 2*p1.z", "length(p1) - S"],
+        &["(p1.x + 2*p1.y + 2*p1.z)/3", "length(p1) - S"],
         PUSH,
-    )
-    .other_rows(),
+    ),
     twin(
         "circle about a particle",
         3,
         &[(1, [0.8, -0.4, 0.0])],
         |t| vec![OnCircle::new(P[1], P[0], [1.0, 2.0, 2.0], t.s()).into()],
-        &["dot([1, 2, 2], p1 - p0)", "dist(p0, p1) - S"],
-    )
-    .other_rows(),
+        &["dot([1, 2, 2], p1 - p0)/3", "dist(p0, p1) - S"],
+    ),
     twin(
         "ellipse",
         2,
@@ -641,6 +629,33 @@ pub(crate) const CASES: &[Case] = &[
     )
     .anywhere(),
     twin(
+        "custom of two particles and time",
+        2,
+        &[],
+        |t| {
+            let later = t.later();
+            let shear =
+                move |x: &[[Hyper; 3]], t: Hyper| (x[0][0] - x[1][0]).hypot(x[0][1] - x[1][1] * (t + later).exp());
+            vec![Custom::new([P[2], P[1]], shear).into()]
+        },
+        &["sqrt((p2.x - p1.x)^2 + (p2.y - p1.y*exp(t))^2)"],
+    )
+    .without_motion(),
+    twin(
+        "custom of three particles and time, in space",
+        3,
+        &[],
+        |t| {
+            let later = t.later();
+            let wavy = move |x: &[[Hyper; 3]], t: Hyper| {
+                (x[0][2] * x[1][0]).sin() + x[2][1] * (t + later - x[1][1]) + x[0][0].powi(3) * x[2][2]
+            };
+            vec![Custom::new([P[1], P[3], P[0]], wavy).into()]
+        },
+        &["sin(p1.z*p3.x) + p0.y*(t - p3.y) + p1.x^3*p0.z"],
+    )
+    .without_motion(),
+    twin(
         "rope and strut",
         2,
         &[],
@@ -701,8 +716,13 @@ fn weights() -> Constraint {
 }
 
 /// A direction that turns about z.
-fn turning(t: &Clock, z: f64) -> [Driven; 3] {
-    [t.of("cos(t)"), t.of("sin(t)"), z.into()]
+fn turning(t: &Clock) -> [Driven; 3] {
+    [t.of("cos(t)"), t.of("sin(t)"), 0.0.into()]
+}
+
+/// A direction that turns about z and rises along z.
+fn rising(t: &Clock) -> [Driven; 3] {
+    [t.of("cos(t)"), t.of("sin(t)"), t.of("0.2 + t/5")]
 }
 
 fn on_curve(components: &[&str]) -> Constraint {
