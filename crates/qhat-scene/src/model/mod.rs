@@ -30,7 +30,6 @@ pub(crate) use driven::{Driven, DrivenVector};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::Parameters;
 pub(crate) use generate::Generate;
-pub use integrator::integrator_names;
 pub(crate) use load::Load;
 pub(crate) use springs::Spring;
 pub(crate) use step::{Feedback, Forces, Step};
