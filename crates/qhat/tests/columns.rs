@@ -21,7 +21,16 @@ const ENDINGS: &str = "rs md toml ts mts svelte css html js mjs json jsonc py cp
     gitattributes";
 
 /// Hand-written files without an ending, by their path from the root.
-const NAMED: [&str; 5] = ["Makefile", "scripts/setup", "scripts/build-wasm", ".ci/run", "benches/peers/run"];
+const NAMED: [&str; 8] = [
+    "Makefile",
+    "scripts/setup",
+    "scripts/build-wasm",
+    "scripts/check",
+    "scripts/toolchain",
+    "scripts/embed-font",
+    ".ci/run",
+    "benches/peers/run",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
