@@ -1,6 +1,7 @@
 # shellcheck shell=bash
-# Shared by scripts/setup, scripts/build-wasm and benches/peers/run: the folder of downloaded tools, the installation of
-# Debian packages, the Rust that can compile for the browser, and the wasm-bindgen that belongs to this checkout.
+# Shared by the scripts of this folder and by benches/peers/run: messages, the folder of downloaded tools, the
+# installation of Debian packages, the Rust that can compile for the browser, and the wasm-bindgen that belongs to this
+# checkout.
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/qhat
 wasm_target=wasm32-unknown-unknown
@@ -9,6 +10,13 @@ say() { printf '%s: %s\n' "${0##*/}" "$*"; }
 die() {
     printf '%s: %s\n' "${0##*/}" "$*" >&2
     exit 1
+}
+
+# Runs a command for at most this many seconds, or without a limit on systems that have no `timeout`.
+bounded() {
+    local -a limit=()
+    if command -v timeout >/dev/null; then limit=(timeout --foreground "$1"); fi
+    "${limit[@]}" "${@:2}"
 }
 
 # Installs Debian packages; the only step that needs root.

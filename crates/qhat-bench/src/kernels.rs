@@ -3,7 +3,7 @@
 
 use crate::setting::Setting;
 use crate::workload::Workload;
-use qhat::{Integrator, Settings, Simulation, Workspace, evaluate, project};
+use qhat::{Integrator, Settings, Simulation, StepError, Workspace, evaluate, project};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,8 +12,8 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs, io};
 
-type Kernel = Box<dyn FnMut()>;
-type SetUp = fn() -> Kernel;
+type Kernel = Box<dyn FnMut() -> Result<(), StepError>>;
+type SetUp = fn() -> Result<Kernel, Box<dyn Error>>;
 
 /// Each kernel: its name and the function that sets it up.
 const KERNELS: [(&str, SetUp); 6] = [
@@ -25,54 +25,55 @@ const KERNELS: [(&str, SetUp); 6] = [
     ("chain100-evaluate", terms),
 ];
 
-fn workload(name: &str) -> Workload {
-    name.parse().expect("kernels name workloads")
-}
-
 /// One frame of 1 ms, after 0.1 s of motion. At the start all particles are at rest, and a step is cheaper than later.
-fn frame(name: &str, integrator: Integrator) -> Kernel {
-    let (system, state) = workload(name).system();
+fn frame(name: &str, integrator: Integrator) -> Result<Kernel, Box<dyn Error>> {
+    let (system, state) = name.parse::<Workload>()?.system()?;
     let settings = Setting { integrator, tolerance: 1e-4 }.settings(1e-3);
-    let mut simulation = Simulation::new(system, state, settings).expect("the start is consistent");
-    simulation.advance(0.1).expect("a short motion succeeds");
-    Box::new(move || {
-        black_box(simulation.step().expect("one frame more succeeds"));
-    })
+    let mut simulation = Simulation::new(system, state, settings)?;
+    simulation.advance(0.1)?;
+    Ok(Box::new(move || {
+        black_box(simulation.step()?);
+        Ok(())
+    }))
 }
 
 /// The projection of a net whose particles were moved by up to a hundredth of a rod.
-fn projection() -> Kernel {
-    let net = workload("net32");
-    let (system, state) = net.system();
+fn projection() -> Result<Kernel, Box<dyn Error>> {
+    let net: Workload = "net32".parse()?;
+    let (system, state) = net.system()?;
     let coordinates = net.positions.len();
     let moved = net.positions.iter().enumerate().map(|(i, x)| x + 1e-4 * (i as f64 * 0.7).sin()).collect();
     let mut state = state.with_motion(moved, vec![0.0; coordinates]);
     let mut workspace = Workspace::new(&system);
-    Box::new(move || {
-        let found = project(&system, &mut state, &Settings::default(), &mut workspace);
-        black_box(found.expect("a net is found near by"));
-    })
+    Ok(Box::new(move || {
+        black_box(project(&system, &mut state, &Settings::default(), &mut workspace)?);
+        Ok(())
+    }))
 }
 
 /// One evaluation of all symbols of the equation.
-fn terms() -> Kernel {
-    let (system, state) = workload("chain100").system();
-    Box::new(move || {
+fn terms() -> Result<Kernel, Box<dyn Error>> {
+    let (system, state) = "chain100".parse::<Workload>()?.system()?;
+    Ok(Box::new(move || {
         black_box(evaluate(&system, &state));
-    })
+        Ok(())
+    }))
 }
 
 /// The function whose instructions are counted: callgrind is told to collect inside it only.
 #[inline(never)]
-fn counted(kernel: &mut dyn FnMut()) {
-    kernel();
+fn counted(kernel: &mut dyn FnMut() -> Result<(), StepError>) -> Result<(), StepError> {
+    kernel()
 }
 
-/// Sets one kernel up and runs it once, under callgrind. Returns false if no kernel has this name.
-pub fn run_one(name: &str) -> bool {
-    let Some((_, set_up)) = KERNELS.iter().find(|(known, _)| *known == name) else { return false };
-    counted(&mut *set_up());
-    true
+/// Sets one kernel up and runs it once, under callgrind.
+///
+/// # Errors
+/// A name that no kernel has, or an error of the engine.
+pub fn run_one(name: &str) -> Result<(), Box<dyn Error>> {
+    let found = KERNELS.iter().find(|(known, _)| *known == name);
+    let (_, set_up) = found.ok_or_else(|| format!("there is no kernel `{name}`"))?;
+    Ok(counted(&mut *set_up()?)?)
 }
 
 /// Counts the instructions of every kernel and prints them beside the counts kept in the file; `keep` writes the file

@@ -19,7 +19,7 @@ mod workload;
 
 pub use errors::Errors;
 pub use names::{NAMES, UnknownWorkload};
-pub use run::{Outcome, best, quickest, run};
+pub use run::{Outcome, RunError, best, quickest, run};
 pub use series::Series;
 pub use setting::{SETTINGS, Setting, UnknownSetting, settings};
 pub use table::Row;

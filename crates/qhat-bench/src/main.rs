@@ -42,7 +42,7 @@ fn command() -> Result<(), Box<dyn Error>> {
         ["workloads", ..] => workloads(&words[1..], &results.join("workloads.csv")),
         ["kernels"] => kernels::compare(&results.join("instructions.csv"), false),
         ["kernels", "--keep"] => kernels::compare(&results.join("instructions.csv"), true),
-        ["kernel", name] if kernels::run_one(name) => Ok(()),
+        ["kernel", name] => kernels::run_one(name),
         ["settings", workload] => {
             settings(&workload.parse()?).iter().for_each(|setting| println!("{setting}"));
             Ok(())

@@ -31,6 +31,9 @@ pub const NAMES: [&str; 22] = [
     "many10000",
 ];
 
+/// The most particles of a workload, ten times as many as the largest of [`NAMES`] has.
+const MOST_PARTICLES: usize = 10_000_000;
+
 /// The error for a name that no workload has.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error(
@@ -64,16 +67,20 @@ fn sized(family: &str, size: &str) -> Option<Workload> {
         _ => (size, false),
     };
     // Sizes are integers, read as f64 because 1e6 is easier to read than 1000000.
-    let size = digits.parse().ok().filter(|&size: &f64| (1.0..=1e7).contains(&size) && size.fract() == 0.0)?;
+    let size = digits
+        .parse()
+        .ok()
+        .filter(|&size: &f64| (1.0..=MOST_PARTICLES as f64).contains(&size) && size.fract() == 0.0)?;
     let count = size as usize;
+    let most = MOST_PARTICLES;
     match family {
         "chain" => Some(shapes::chain(count)),
         "heavy" => Some(shapes::heavy(size)),
-        "net" if count > 1 => Some(shapes::net(count, 2)),
-        "cloth" if count > 1 => Some(shapes::net(count, 3)),
-        "truss" if count > 2 => Some(shapes::truss(count, redundant)),
+        "net" if count > 1 && count * count <= most => Some(shapes::net(count, 2)),
+        "cloth" if count > 1 && count * count <= most => Some(shapes::net(count, 3)),
+        "truss" if count > 2 && 2 * count <= most => Some(shapes::truss(count, redundant)),
         "star" => Some(shapes::star(count)),
-        "many" => Some(shapes::many(count)),
+        "many" if 21 * count <= most => Some(shapes::many(count)),
         _ => None,
     }
 }

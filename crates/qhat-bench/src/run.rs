@@ -4,8 +4,20 @@ use crate::errors::Errors;
 use crate::setting::Setting;
 use crate::workload::Workload;
 use cpu_time::ThreadTime;
-use qhat::{Simulation, StepError};
+use qhat::{BuildError, Simulation, StepError};
 use std::time::Duration;
+use thiserror::Error;
+
+/// The error of a run that cannot start.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The workload is too large for the engine.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// Settings out of range, or a start that cannot be made consistent.
+    #[error(transparent)]
+    Step(#[from] StepError),
+}
 
 /// The cost and the errors of a run.
 #[derive(Clone, Debug)]
@@ -35,15 +47,15 @@ impl Outcome {
 /// positions and velocities at the end of every frame; its time is not counted.
 ///
 /// # Errors
-/// Settings out of range, or a start that cannot be made consistent. A step that fails ends the run, and
+/// A workload that is too large, settings out of range, or a start that cannot be made consistent. A step that fails ends the run, and
 /// [`Outcome::ended`] has the error.
 pub fn run(
     workload: &Workload,
     setting: &Setting,
     limit: Duration,
     mut each: impl FnMut(&[f64], &[f64]),
-) -> Result<Outcome, StepError> {
-    let (system, state) = workload.system();
+) -> Result<Outcome, RunError> {
+    let (system, state) = workload.system()?;
     let mut simulation = Simulation::new(system, state, setting.settings(workload.frame))?;
     let mut outcome = Outcome {
         cpu: Duration::ZERO,
@@ -83,7 +95,7 @@ pub fn run(
 ///
 /// # Errors
 /// The same errors as [`run`].
-pub fn best(workload: &Workload, setting: &Setting, limit: Duration) -> Result<Outcome, StepError> {
+pub fn best(workload: &Workload, setting: &Setting, limit: Duration) -> Result<Outcome, RunError> {
     let again = || run(workload, setting, limit, |_, _| ());
     quickest(again()?, again)
 }
@@ -93,7 +105,7 @@ pub fn best(workload: &Workload, setting: &Setting, limit: Duration) -> Result<O
 ///
 /// # Errors
 /// The errors of the runs.
-pub fn quickest(first: Outcome, again: impl Fn() -> Result<Outcome, StepError>) -> Result<Outcome, StepError> {
+pub fn quickest(first: Outcome, again: impl Fn() -> Result<Outcome, RunError>) -> Result<Outcome, RunError> {
     const RUNS: usize = 3;
     let (mut best, mut spent) = (first.clone(), first.cpu);
     for _ in 1..RUNS {

@@ -1,11 +1,10 @@
 //! Several workloads one after the other, each under its settings.
 
 use crate::names::{NAMES, UnknownWorkload};
-use crate::run::best;
+use crate::run::{RunError, best};
 use crate::setting::{Setting, settings};
 use crate::table::Row;
 use crate::workload::Workload;
-use qhat::StepError;
 use std::time::Duration;
 
 /// The workloads to measure, with their settings and the limit of time.
@@ -38,7 +37,7 @@ impl Series {
     ///
     /// # Errors
     /// A run that cannot start, or an error of `each`.
-    pub fn run<E: From<UnknownWorkload> + From<StepError>>(
+    pub fn run<E: From<UnknownWorkload> + From<RunError>>(
         &self,
         mut each: impl FnMut(&Row) -> Result<(), E>,
     ) -> Result<(), E> {

@@ -42,10 +42,7 @@ impl Writer {
 /// # Errors
 /// A file that cannot be read.
 pub fn measure(workload: &Workload, path: &Path) -> io::Result<(usize, Errors)> {
-    let numbers: Vec<f64> = fs::read(path)?
-        .chunks_exact(size_of::<f64>())
-        .map(|bytes| f64::from_le_bytes(bytes.try_into().expect("chunks are as long as a number")))
-        .collect();
+    let numbers: Vec<f64> = fs::read(path)?.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let coordinates = workload.positions.len();
     let mut errors = Errors::of(workload);
     let mut frames = 0;

@@ -1,6 +1,6 @@
 //! A workload in neutral form: the input that all engines share, without anything that belongs to one of them.
 
-use qhat::{Dimension, Distance, Gravity, Particle, State, System};
+use qhat::{BuildError, Dimension, Distance, Gravity, Particle, State, System};
 use serde::Serialize;
 
 /// The gravity of all workloads, downwards in y \[m/s²\].
@@ -48,7 +48,10 @@ impl Workload {
     }
 
     /// The workload as a system of qhat.
-    pub fn system(&self) -> (System, State) {
+    ///
+    /// # Errors
+    /// A matrix A that is too large for the engine.
+    pub fn system(&self) -> Result<(System, State), BuildError> {
         let mut builder = System::builder(if self.dimension == 2 { Dimension::Two } else { Dimension::Three });
         let ids: Vec<_> = (0..self.particle_count())
             .map(|i| {
@@ -63,7 +66,7 @@ impl Workload {
         let mut acceleration = [0.0; 3];
         acceleration[..self.dimension].copy_from_slice(&self.gravity);
         builder.force(Gravity { acceleration });
-        builder.build().expect("shapes are made of finite numbers, names of counts")
+        builder.build()
     }
 
     /// The workload as the JSON file that the other engines read.

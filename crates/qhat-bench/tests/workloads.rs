@@ -44,7 +44,21 @@ fn shapes_have_as_many_particles_and_rods_as_their_names_say() {
 
 #[test]
 fn names_that_are_none_are_refused() {
-    for name in ["", "chain", "chain0", "chain1.5", "chain100r", "rope5", "truss2", "five-bar", "chain1e9", "net1"] {
+    for name in [
+        "",
+        "chain",
+        "chain0",
+        "chain1.5",
+        "chain100r",
+        "rope5",
+        "truss2",
+        "five-bar",
+        "chain1e9",
+        "net1",
+        "net1e7",
+        "cloth4000",
+        "many1e6",
+    ] {
         assert!(name.parse::<Workload>().is_err(), "{name}");
     }
     let message = "rope".parse::<Workload>().unwrap_err().to_string();

@@ -1,8 +1,8 @@
 //! The commands, arguments and options of the command line.
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
-use qhat_scene::integrator_names;
+use qhat::Integrator;
 use qhat_shapes::Options;
 use std::path::PathBuf;
 
@@ -71,13 +71,13 @@ pub(crate) struct Run {
 
     /// The integrator, in place of the scene's
     #[arg(long, value_name = "NAME", value_parser = integrator_parser())]
-    pub(crate) integrator: Option<String>,
+    pub(crate) integrator: Option<Integrator>,
 
     /// The relative error of a substep that adaptive integrators aim at, in place of the scene's
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
 
-    /// Do not look for the largest tension, one more solve for each substep
+    /// Leave out the largest tension, which costs one more solve for each substep
     #[arg(long)]
     pub(crate) no_tension: bool,
 
@@ -96,15 +96,15 @@ pub(crate) struct Render {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
 
-    /// Write the picture to this file; its ending says how: .svg or .png
+    /// Write the picture to this file, whose ending gives the format: .svg or .png
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
 
-    /// Write over an output that exists
+    /// Replace an output that exists
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Simulate to this time and draw what is there [s] [default: the start]
+    /// Simulate to this time [s] and draw the state there [default: 0, the start]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) at: Option<f64>,
 
@@ -112,7 +112,7 @@ pub(crate) struct Render {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "at")]
     pub(crate) from: Option<PathBuf>,
 
-    /// Which frame of the trajectory, counted from 0 [default: the last]
+    /// The frame of the trajectory, counted from 0 [default: the last]
     #[arg(long, value_name = "K", requires = "from")]
     pub(crate) frame: Option<u64>,
 
@@ -120,11 +120,11 @@ pub(crate) struct Render {
     #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size)]
     pub(crate) size: [u32; 2],
 
-    /// Light strokes on a dark background
+    /// Draw light strokes on a dark background
     #[arg(long)]
     pub(crate) dark: bool,
 
-    /// Show no progress
+    /// Show no progress bar
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
@@ -197,6 +197,6 @@ pub(crate) struct Bench {
 }
 
 /// Accepts the names of the integrators, and lists them in the help.
-fn integrator_parser() -> PossibleValuesParser {
-    PossibleValuesParser::new(integrator_names().map(|(name, _)| name))
+fn integrator_parser() -> impl TypedValueParser<Value = Integrator> {
+    PossibleValuesParser::new(Integrator::names().map(|(name, _)| name)).try_map(|name| name.parse::<Integrator>())
 }

@@ -1,7 +1,6 @@
 //! A failure of the command: its message and its exit code.
 
-use qhat::StepError;
-use qhat_bench::UnknownWorkload;
+use qhat_bench::{RunError, UnknownWorkload};
 use qhat_scene::fitted;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -44,8 +43,8 @@ impl Failure {
     }
 }
 
-impl From<StepError> for Failure {
-    fn from(error: StepError) -> Self {
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
         Failure::input(error)
     }
 }

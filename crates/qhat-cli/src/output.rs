@@ -1,4 +1,4 @@
-//! Where a file goes: never over one that exists unless told so, and never half of it.
+//! The output file of a command. It replaces an existing file only with --force, and appears only when complete.
 
 use crate::failure::Failure;
 use std::fs::File;
@@ -14,7 +14,10 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Checks name and place before anything is computed, and those of the files that come with it.
+    /// Checks the name and the folder of the file and of its companions, before anything is computed.
+    ///
+    /// # Errors
+    /// A missing folder, a folder in place of a file, a file that exists without `force`.
     pub(crate) fn new(path: &Path, companions: &[PathBuf], force: bool) -> Result<Self, Failure> {
         let output = Output { path: path.to_owned(), force };
         if !output.folder().is_dir() {
@@ -35,19 +38,19 @@ impl Output {
         &self.path
     }
 
-    /// A file without a name on the disk of the output, gone when it is closed.
+    /// A file without a name in the folder of the output, removed when it is closed.
     pub(crate) fn scratch(&self) -> Result<File, Failure> {
         tempfile::tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
     }
 
-    /// A file beside the output that [`Output::put`] can rename; removed if that never happens.
+    /// A temporary file beside the output, for [`Output::put`]; removed if it is not renamed.
     pub(crate) fn temporary(&self) -> Result<NamedTempFile, Failure> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(".qhat-").suffix(".part");
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // As any new file of the user, less the umask; without this it would be for the user's eyes only.
+            // The rights of any new file, less the umask; a temporary file has rights for its user only.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         builder.tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
@@ -58,18 +61,18 @@ impl Output {
         self.put_as(file, &self.path)
     }
 
-    /// Renames a finished file to one that comes with the output.
+    /// Renames a finished file to a companion of the output.
     pub(crate) fn put_as(&self, file: NamedTempFile, path: &Path) -> Result<(), Failure> {
         let outcome = if self.force { file.persist(path) } else { file.persist_noclobber(path) };
         match outcome {
             Ok(_) => Ok(()),
-            // Made by someone else while this ran.
+            // Another program made the file in the meantime.
             Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => Err(exists(path)),
             Err(failed) => Err(self.cannot_write(&failed.error)),
         }
     }
 
-    /// What to say when writing fails.
+    /// The failure of a write.
     pub(crate) fn cannot_write(&self, error: &io::Error) -> Failure {
         Failure::io(format!("cannot write `{}`", self.path.display()), error)
     }

@@ -1,4 +1,4 @@
-//! Printing on stdout. A closed pipe (`qhat scenes | head -1`) is no error, because the reader has what it wanted.
+//! Printing on stdout. A closed pipe (`qhat scenes | head -1`) is no error, because the reader asked for no more.
 
 use crate::failure::Failure;
 use qhat::Solver;

@@ -1,4 +1,4 @@
-//! How a run ended.
+//! The end of a run.
 
 use crate::failure::{INTERRUPTED, NOT_REACHED};
 use qhat::StepError;
@@ -6,22 +6,22 @@ use serde::Serialize;
 use std::fmt;
 use std::process::ExitCode;
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Status {
-    /// It reached its end.
+    /// The run reached its duration.
     Done,
     /// The motion became infinite, left its constraints, or needed ever smaller steps.
     Diverged,
     /// No positions near by satisfy the constraints.
     Infeasible,
-    /// Someone pressed Ctrl-C.
+    /// The user pressed Ctrl-C.
     Interrupted,
 }
 
 impl Status {
-    /// How a run ended that a step could not go on with.
+    /// The end of a run whose step or start failed with this error.
     pub(crate) fn of(error: &StepError) -> Self {
         match error {
             StepError::NotSatisfied { .. } | StepError::Penetrates { .. } => Status::Infeasible,
@@ -29,7 +29,7 @@ impl Status {
         }
     }
 
-    /// What the command tells scripts.
+    /// The exit code of the command, for scripts.
     pub(crate) fn exit_code(self) -> ExitCode {
         match self {
             Status::Done => ExitCode::SUCCESS,

@@ -1,18 +1,6 @@
 //! `qhat run` on scenes with events: its messages about impacts, slip and breaks.
 
-use crate::common::{Folder, Ran};
-
-/// A pendulum released from the horizontal. Its rod carries 3 m g sin φ at the angle φ below the horizontal, and breaks
-/// at 2 m g.
-const BREAKS: &str = r#"
-schema = "qhat/1"
-name = "Breaks"
-dimension = 2
-step = { h = 0.01, duration = 0.6, tolerance = 1e-9 }
-forces = { gravity = [0.0, -10.0] }
-particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = [1.0, 0.0] }]
-constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
-"#;
+use crate::common::{BREAKS, Folder};
 
 /// A particle that falls 0.2 m in 0.2 s onto ground without restitution.
 const LANDS: &str = r#"
@@ -25,14 +13,10 @@ particles = [{ id = "ball", at = [0.0, 0.2] }]
 constraints = [{ kind = "half-space", id = "ground" }]
 "#;
 
-fn json(ran: &Ran) -> serde_json::Value {
-    serde_json::from_str(&ran.stdout).unwrap()
-}
-
 #[test]
 fn what_broke_is_told_with_its_name_and_its_time() {
     let folder = Folder::with(&[("breaks.toml", BREAKS)]);
-    let summary = json(&folder.qhat(&["run", "breaks.toml", "--json"]).well());
+    let summary = folder.qhat(&["run", "breaks.toml", "--json"]).well().json();
     let broke = summary["events"]["broke"].as_array().unwrap();
     assert_eq!(broke.len(), 1, "{broke:?}");
     assert_eq!(broke[0]["constraint"], "arm");
@@ -56,7 +40,7 @@ fn what_broke_is_told_with_its_name_and_its_time() {
 #[test]
 fn impacts_are_counted_and_quiet_runs_say_nothing_of_events() {
     let folder = Folder::with(&[("lands.toml", LANDS), ("flies.toml", &LANDS.replace("0.2]", "9.0]"))]);
-    let summary = json(&folder.qhat(&["run", "lands.toml", "--json"]).well());
+    let summary = folder.qhat(&["run", "lands.toml", "--json"]).well().json();
     assert_eq!(summary["events"]["impacts"], 1, "{}", summary["events"]);
     assert_eq!(summary["events"]["broke"], serde_json::json!([]));
     let said = folder.qhat(&["run", "lands.toml"]).well().stdout;

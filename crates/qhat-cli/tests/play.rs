@@ -67,7 +67,10 @@ mod served {
         let page = String::from_utf8(body).unwrap();
         assert!(page.contains("<title>qhat</title>"), "{page}");
         // All files that the page requests are served with the correct type.
-        let addresses = page.split(['"', '\'']).filter_map(|part| part.strip_prefix("./"));
+        let addresses: Vec<&str> = page.split(['"', '\'']).filter_map(|part| part.strip_prefix("./")).collect();
+        for ending in [".js", ".css"] {
+            assert!(addresses.iter().any(|address| address.ends_with(ending)), "no {ending} file in {page}");
+        }
         for address in addresses {
             let (head, _) = server.get(&format!("/{address}?query"));
             assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{address}: {head}");

@@ -1,20 +1,8 @@
 //! `qhat render`: pictures, read back by a parser of XML and a decoder of PNG, and input that is refused.
 
-use crate::common::{Folder, INFEASIBLE, PENDULUM};
+use crate::common::{BREAKS, Folder, INFEASIBLE, PENDULUM};
 use roxmltree::Document;
 use std::path::Path;
-
-/// A pendulum released from the horizontal. Its rod carries 3 m g sin φ at the angle φ below the horizontal, and breaks
-/// at 2 m g.
-const BREAKS: &str = r#"
-schema = "qhat/1"
-name = "Breaks"
-dimension = 2
-step = { h = 0.01, duration = 0.6, tolerance = 1e-9 }
-forces = { gravity = [0.0, -10.0] }
-particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = [1.0, 0.0] }]
-constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
-"#;
 
 /// The titles and colours of the links of a picture, and its texts.
 fn drawn(svg: &str) -> (Vec<(String, String)>, Vec<String>) {
@@ -101,6 +89,12 @@ fn a_broken_link_leaves_stubs_by_either_way() {
         let picture = folder.read(name);
         assert!(has_class(&picture, "broken") && drawn(&picture).0.is_empty(), "{name}");
     }
+    // The rods of an infeasible start have no tension and wrong lengths, but they cannot break.
+    let folder = Folder::with(&[("torn.toml", INFEASIBLE)]);
+    assert_eq!(folder.qhat(&["run", "torn.toml", "-o", "torn.npz", "-q"]).code, 1);
+    folder.qhat(&["render", "torn.toml", "-o", "torn.svg", "--from", "torn.npz"]).well();
+    let picture = folder.read("torn.svg");
+    assert!(!has_class(&picture, "broken") && drawn(&picture).0.len() == 2, "{picture}");
 }
 
 #[test]
@@ -123,8 +117,9 @@ fn a_run_that_ends_early_is_drawn_and_marked() {
 #[test]
 fn what_cannot_be_drawn_is_refused_and_every_file_stays() {
     let euler = PENDULUM.replace("h = 0.01,", "h = 0.01, integrator = \"euler\",");
-    let files = [("bob.toml", PENDULUM), ("bob.svg", "mine"), ("no.npz", "no zip"), ("euler.toml", euler.as_str())];
-    let folder = Folder::with(&files);
+    let uneven = euler.replace("h = 0.01,", "h = 0.3,");
+    let scenes = [("bob.toml", PENDULUM), ("euler.toml", &euler), ("uneven.toml", &uneven)];
+    let folder = Folder::with(&[&scenes[..], &[("bob.svg", "mine"), ("no.npz", "no zip")]].concat());
     folder.qhat(&["run", "bob.toml", "-o", "bob.npz", "-q"]).well();
     let refused = |arguments: &[&str], words: &str| {
         folder.qhat(&[&["render"], arguments].concat()).refused(words);
@@ -139,6 +134,7 @@ fn what_cannot_be_drawn_is_refused_and_every_file_stays() {
     }
     refused(&["bob.toml", "-o", "a.svg", "--at", "1e300"], "more than the");
     refused(&["euler.toml", "-o", "a.svg", "--at", "0.015"], "choose --at as a multiple of 0.01 s");
+    refused(&["uneven.toml", "-o", "a.svg", "--at", "0.3"], "choose its `duration` as a multiple of 0.3 s");
     for size in ["800", "100x100", "9000x800", "axb", "-800x800"] {
         refused(&["bob.toml", "-o", "a.svg", &format!("--size={size}")], "--size");
     }
@@ -149,7 +145,7 @@ fn what_cannot_be_drawn_is_refused_and_every_file_stays() {
     refused(&["bob.toml", "-o", "a.svg", "--from", "no.npz"], "is no trajectory");
     refused(&["net", "-o", "a.svg", "--from", "bob.npz"], "the array `positions`");
     assert_eq!(folder.read("bob.svg"), "mine");
-    assert_eq!(folder.files(), ["bob.npz", "bob.svg", "bob.toml", "euler.toml", "no.npz"]);
+    assert_eq!(folder.files(), ["bob.npz", "bob.svg", "bob.toml", "euler.toml", "no.npz", "uneven.toml"]);
     folder.qhat(&["render", "bob.toml", "-o", "bob.svg", "--force"]).well();
     assert!(folder.read("bob.svg").starts_with("<svg"));
 }

@@ -56,7 +56,7 @@ mod tree;
 
 pub use error::{SceneError, SceneErrors};
 pub use load::{Format, load, load_bytes};
-pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension, integrator_names};
+pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub use report::fitted;
 pub use scene::Scene;
 pub use schema::json_schema;

@@ -1,4 +1,4 @@
-//! The shapes of constraints. The match over the kinds has no wildcard: a new kind does not compile before it is named.
+//! The shapes of constraints. A test fails for a kind that the match over the kinds does not name.
 
 use crate::gears;
 use crate::list::Shapes;
@@ -61,7 +61,7 @@ pub(crate) fn add(constraint: &Constraint, shapes: &mut Shapes<'_>) {
             let wire = new(ShapeKind::Wire).at(on.curve.drawn(PIECES));
             shapes.push_shared(wire);
         }
-        // A test fails for a kind that is not named above.
+        // The engine's list of kinds may grow; a test fails for a kind that is not named above.
         _ => (),
     }
 }

@@ -1,4 +1,4 @@
-//! The shapes of forces. The match over the kinds has no wildcard: a new kind does not compile before it is named.
+//! The shapes of forces. A test fails for a kind that the match over the kinds does not name.
 
 use crate::list::Shapes;
 use crate::shape::{Shape, ShapeKind, Source};
@@ -31,7 +31,7 @@ pub(crate) fn add(forces: &[Force], shapes: &mut Shapes<'_>) {
             | Force::HarmonicForce(_)
             // The arms of a torsion spring are drawn as the rods that hold them.
             | Force::TorsionSpring(_) => (),
-            // A test fails for a kind that is not named above.
+            // The engine's list of kinds may grow; a test fails for a kind that is not named above.
             _ => (),
         }
     }

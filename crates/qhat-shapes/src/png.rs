@@ -11,7 +11,7 @@ const FONT: &[u8] = include_bytes!("../font/Inter-Regular.ttf");
 /// The error of a PNG that cannot be made.
 #[derive(Debug)]
 pub enum PngError {
-    /// A width or height of 0, or more pixels than fit into memory.
+    /// A width or height of 0, or above [`Options::MOST`].
     Size([u32; 2]),
     /// The picture could not be read or written; the text is the message of the library.
     Library(String),
@@ -20,7 +20,10 @@ pub enum PngError {
 impl std::fmt::Display for PngError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            PngError::Size([width, height]) => write!(f, "there is no room for a picture of {width} × {height} pixels"),
+            PngError::Size([width, height]) => {
+                let most = Options::MOST;
+                write!(f, "a picture has 1 to {most} pixels in width and in height, not {width} × {height}")
+            }
             PngError::Library(words) => write!(f, "the picture could not be made: {words}"),
         }
     }
@@ -34,15 +37,18 @@ impl std::error::Error for PngError {}
 /// and Cyrillic. Other letters leave a gap.
 ///
 /// # Errors
-/// A size without pixels or with too many of them.
+/// A width or height of 0, or above [`Options::MOST`].
 pub fn png(picture: &Picture<'_>, options: &Options) -> Result<Vec<u8>, PngError> {
+    let [width, height] = options.size;
+    if ![width, height].iter().all(|side| (1..=Options::MOST).contains(side)) {
+        return Err(PngError::Size(options.size));
+    }
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(FONT.to_vec());
     fonts.set_sans_serif_family("Inter");
     let reading = usvg::Options { fontdb: Arc::new(fonts), font_family: "Inter".into(), ..usvg::Options::default() };
     let library = |error: &dyn std::fmt::Display| PngError::Library(error.to_string());
     let tree = usvg::Tree::from_str(&svg(picture, options), &reading).map_err(|error| library(&error))?;
-    let [width, height] = options.size;
     let mut pixels = Pixmap::new(width, height).ok_or(PngError::Size(options.size))?;
     resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
     pixels.encode_png().map_err(|error| library(&error))
@@ -106,9 +112,9 @@ mod tests {
         let shipped = qhat_scene::shipped()[0].load().unwrap();
         let (system, state) = (&shipped.system, &shipped.state);
         let picture = Picture { system, state, time: 0.0, tension: &[], broken: &[], name: "", note: "" };
-        for size in [[0, 100], [100, 0]] {
+        for size in [[0, 100], [100, 0], [100, Options::MOST + 1], [u32::MAX; 2]] {
             let error = super::png(&picture, &Options { size, dark: false }).unwrap_err();
-            assert!(matches!(error, PngError::Size(_) | PngError::Library(_)), "{error}");
+            assert!(matches!(error, PngError::Size(refused) if refused == size), "{error}");
         }
     }
 }

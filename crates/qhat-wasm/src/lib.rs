@@ -169,18 +169,18 @@ impl Simulation {
         convert::controls(&self.inner)
     }
 
-    /// Sets the controls that differ from the present ones. Throws `SettingsError` or `StepError`.
+    /// Sets the controls that differ from the present ones. Throws `SettingsError`, `ForceError` or `StepError`.
     pub fn set_controls(&mut self, controls: &Controls) -> Result<(), JsValue> {
         convert::set_controls(&mut self.inner, controls)
     }
 
-    /// Takes hold of a particle with a mouse spring towards a target \[m\].
+    /// Takes hold of a particle with a mouse spring towards a target \[m\]. Throws `ForceError`.
     pub fn grab(&mut self, particle: usize, target: &[f64]) -> Result<(), JsValue> {
         let id = self.inner.system().particle_at(particle).ok_or(ForceError::NoParticle { particle });
         id.and_then(|id| self.inner.grab(id, convert::target(target))).map_err(|cause| error("ForceError", cause))
     }
 
-    /// Moves the target of the mouse spring \[m\].
+    /// Moves the target of the mouse spring \[m\]. Throws `ForceError`.
     pub fn drag_to(&mut self, target: &[f64]) -> Result<(), JsValue> {
         self.inner.drag_to(convert::target(target)).map_err(|cause| error("ForceError", cause))
     }

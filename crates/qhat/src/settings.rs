@@ -46,6 +46,15 @@ impl Integrator {
         Integrator::Bdf2,
     ];
 
+    /// Names beside those of [`Integrator::name`]: the name of the method in books, beside the word of scenes.
+    const SYNONYMS: [(&str, Integrator); 1] = [("backward-euler", Integrator::Implicit)];
+
+    /// Every name by which a scene or a command may choose an integrator, with the integrator. The names that reports
+    /// use come first.
+    pub fn names() -> impl Iterator<Item = (&'static str, Integrator)> {
+        Integrator::ALL.into_iter().map(|integrator| (integrator.name(), integrator)).chain(Integrator::SYNONYMS)
+    }
+
     /// The name in scene files and commands.
     pub fn name(self) -> &'static str {
         match self {
@@ -104,9 +113,7 @@ impl FromStr for Integrator {
     type Err = SettingsError;
 
     fn from_str(name: &str) -> Result<Self, SettingsError> {
-        // The name of the method in books, beside the word of scenes.
-        let name = if name == "backward-euler" { Integrator::Implicit.name() } else { name };
-        let found = Integrator::ALL.into_iter().find(|integrator| integrator.name() == name);
+        let found = Integrator::names().find(|(known, _)| *known == name).map(|(_, integrator)| integrator);
         found.ok_or_else(|| SettingsError::UnknownIntegrator { name: name.to_owned() })
     }
 }

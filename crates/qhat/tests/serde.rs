@@ -26,6 +26,9 @@ fn reports_settings_and_energies_come_back() {
         comes_back(&integrator);
         assert_eq!(serde_json::to_string(&integrator).unwrap(), format!("\"{integrator}\""));
     }
+    for (name, integrator) in Integrator::names() {
+        assert_eq!(serde_json::from_str::<Integrator>(&format!("\"{name}\"")).unwrap(), integrator);
+    }
     let event = r#"{"time":0.5,"constraint":"ground","kind":{"Impact":{"speed":2.0}}}"#;
     let event: Event = serde_json::from_str(event).unwrap();
     assert_eq!(event.kind, EventKind::Impact { speed: 2.0 });

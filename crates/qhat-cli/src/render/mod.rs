@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use still::Still;
 
-/// What the ending of a file name asks for.
+/// The format of a picture, by the ending of its file name.
 #[derive(Clone, Copy, Debug)]
 enum Format {
     Svg,
@@ -32,7 +32,7 @@ impl Format {
     }
 }
 
-/// Draws a picture as the arguments say. A picture of a run that ended early shows the last state, and says so.
+/// Draws a picture as the arguments say. If a run ends early, its last state is drawn, with the reason beside the time.
 pub(crate) fn render(arguments: &arguments::Render) -> Result<ExitCode, Failure> {
     let format = Format::of(&arguments.output)?;
     let output = Output::new(&arguments.output, &[], arguments.force)?;

@@ -1,22 +1,23 @@
-//! What a picture shows: a state with its tensions, and how the run that led there ended.
+//! The content of a picture: a state with its tensions, and the end of the run that led to it.
 
 use crate::failure::{Failure, warn};
-use crate::run::frames::{Frames, MOST};
+use crate::run::frames::{self, Frames, MOST};
 use crate::run::interrupt::Interrupt;
 use crate::run::progress::Progress;
 use crate::source::Source;
 use crate::status::Status;
 use crate::trajectory::stored::Stored;
-use qhat::{ParticleId, Simulation, State, StepError, System, evaluate};
+use qhat::{Constraint, ParticleId, Settings, Simulation, State, StepError, System, evaluate};
 use qhat_scene::Scene;
 use qhat_shapes::{Picture, Reading};
 use std::path::Path;
 
-/// Times nearer to the end of a frame than this part of a frame are that end: both are quotients of what a user typed.
+/// A time within this part of a frame of the frame's end counts as that end. Both are quotients of decimals that a user
+/// typed, and differ by roundings of 1e-16 of a time.
 const SAME: f64 = 1e-9;
 
-/// A link that is longer than it can be by this part of its length, and carries nothing, is broken. Links that hold
-/// keep their length to 1e-10.
+/// A link that carries nothing counts as broken if its length is out of its limits by this part of the length. Links
+/// that hold keep their length to 1e-10.
 const PARTED: f64 = 1e-6;
 
 /// A state to draw.
@@ -26,7 +27,7 @@ pub(super) struct Still {
     time: f64,
     reading: Reading,
     pub(super) status: Status,
-    /// Why it ended early.
+    /// The reason of an early end.
     pub(super) message: Option<String>,
 }
 
@@ -39,7 +40,7 @@ impl Still {
         let mut simulation = match scene.simulation() {
             Ok(simulation) => simulation,
             Err(StepError::Settings(error)) => return Err(Failure::input(error)),
-            // A start that cannot be made to hold is all that there is to draw.
+            // If no positions near the start satisfy the constraints, the start itself is drawn.
             Err(error) => return Ok(Still::start(scene, &error)),
         };
         let ending = match at {
@@ -106,7 +107,7 @@ struct Ending {
 
 /// Steps to a time \[s\], or as far as the motion goes.
 fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> Result<Ending, Failure> {
-    let length = Frames::new(scene.duration, None, &scene.settings)?.length();
+    let length = scene.duration / frames::fitting(scene.duration, &scene.settings);
     let count = (at / length).ceil();
     if count > MOST {
         return Err(Failure::input(format!("{at} s is {count:e} frames away, more than the {MOST:e} that qhat takes")));
@@ -127,11 +128,14 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
             Ok(_) => progress.at(index + 1, simulation.state().time()),
             Err(StepError::Settings(error)) => {
                 progress.finish();
-                let integrator = scene.settings.integrator;
+                let Settings { integrator, h, .. } = scene.settings;
+                let remedy = if frame == length {
+                    format!("the frames of the scene, of {length} s, end between two of them; choose its `duration`")
+                } else {
+                    format!("{at} s lies between two of them; choose --at")
+                };
                 return Err(Failure::input(format!(
-                    "{error}\n`{integrator}` takes steps of exactly h, and {at} s lies between two of them; \
-                     choose --at as a multiple of {} s",
-                    scene.settings.h
+                    "{error}\n`{integrator}` takes steps of exactly h, and {remedy} as a multiple of {h} s"
                 )));
             }
             Err(error) => {
@@ -144,7 +148,8 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
     Ok(Ending { status: Status::Done, message: None })
 }
 
-/// The places of links that must have broken: a trajectory tells only what they carry.
+/// The places of broken links. A trajectory has tensions and positions only, so a link counts as broken if it can break,
+/// carries nothing and has a length out of its limits.
 fn broken(system: &System, state: &State, tension: &[f64]) -> Vec<usize> {
     let (d, q) = (system.dimension(), state.positions());
     let distance = |a: ParticleId, b: ParticleId| {
@@ -157,5 +162,12 @@ fn broken(system: &System, state: &State, tension: &[f64]) -> Vec<usize> {
         let shorter = link.shortest.is_some_and(|least| apart < least * (1.0 - PARTED));
         tension[*place] == 0.0 && (longer || shorter)
     };
-    system.links().enumerate().filter(has_parted).map(|(place, _)| place).collect()
+    // The links of a system are its rods and limits, in their order.
+    let can_break = system.constraints().iter().filter_map(|named| match &named.constraint {
+        Constraint::Distance(rod) => Some(rod.breaks_at.is_some()),
+        Constraint::Limits(limits) => Some(limits.breaks_at.is_some()),
+        _ => None,
+    });
+    let breakable = system.links().enumerate().zip(can_break).filter(|(_, can_break)| *can_break);
+    breakable.map(|(link, _)| link).filter(has_parted).map(|(place, _)| place).collect()
 }

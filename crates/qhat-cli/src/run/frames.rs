@@ -6,6 +6,11 @@ use qhat::{Settings, SettingsError};
 /// The most frames of a run. A file with more would have at least a gigabyte even for one particle.
 pub(crate) const MOST: f64 = 1e8;
 
+/// The number of frames of about h in a duration \[s\], at least 1.
+pub(crate) fn fitting(duration: f64, settings: &Settings) -> f64 {
+    (duration / settings.h).round().max(1.0)
+}
+
 /// Equal frames over a duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Frames {
@@ -26,7 +31,7 @@ impl Frames {
         }
         let wanted = match count {
             Some(count) => count as f64,
-            None => (duration / settings.h).round().max(1.0),
+            None => fitting(duration, settings),
         };
         if wanted > MOST {
             return Err(Failure::input(format!(

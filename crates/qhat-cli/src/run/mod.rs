@@ -18,7 +18,6 @@ use interrupt::Interrupt;
 use origin::Origin;
 use progress::Progress;
 use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
-use qhat_scene::integrator_names;
 use std::process::ExitCode;
 use std::time::Instant;
 use summary::{Summary, Tally};
@@ -77,10 +76,8 @@ fn settings(arguments: &arguments::Run, scene: Settings) -> Result<Settings, Fai
     if let Some(h) = arguments.h {
         settings.h = h;
     }
-    if let Some(given) = &arguments.integrator {
-        // The parser of the arguments lets no other name through.
-        let chosen = integrator_names().find(|(name, _)| name == given);
-        settings.integrator = chosen.map_or(settings.integrator, |(_, integrator)| integrator);
+    if let Some(integrator) = arguments.integrator {
+        settings.integrator = integrator;
     }
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;

@@ -7,7 +7,7 @@ use std::io::{self, BufReader, Read};
 use std::path::Path;
 use zip::ZipArchive;
 
-/// The origin is a line of JSON; a member that is larger is none \[bytes\].
+/// The most bytes of the origin that are read. The origin is a line of JSON of about a thousand bytes.
 const LARGEST_ORIGIN: u64 = 1 << 20;
 
 /// A trajectory on disk, open for reading.
@@ -27,14 +27,17 @@ impl<'a> Stored<'a> {
         Ok(Stored { path, archive })
     }
 
-    /// How many frames there are.
+    /// The number of frames.
     pub(crate) fn frames(&mut self) -> Result<u64, Failure> {
         let shape = self.header("t").map(|(header, _)| header.shape().to_vec());
         let shape = shape.map_err(|error| self.fault("t", &error))?;
         Ok(shape.first().copied().unwrap_or(0))
     }
 
-    /// The numbers of one frame of an array, of which there must be so many.
+    /// The `count` numbers of one frame of an array.
+    ///
+    /// # Errors
+    /// No such array or frame, another number of numbers, a number that is not finite.
     pub(crate) fn numbers(&mut self, array: &str, frame: u64, count: usize) -> Result<Vec<f64>, Failure> {
         let frames = self.frames()?;
         self.read(array, (frame, frames), count).map_err(|error| self.fault(array, &error))
@@ -62,7 +65,7 @@ impl<'a> Stored<'a> {
         if finite { Ok(numbers) } else { Err(wrong(format!("frame {frame} has numbers that are not finite"))) }
     }
 
-    /// The origin as JSON; none where the file does not tell it.
+    /// The origin as JSON; `None` if the file has none that can be read.
     pub(crate) fn origin(&mut self) -> Option<serde_json::Value> {
         let mut bytes = Vec::new();
         let member = self.archive.by_name("origin.npy").ok()?;

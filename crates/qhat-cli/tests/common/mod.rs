@@ -38,6 +38,18 @@ constraints = [
 ]
 "#;
 
+/// A pendulum released from the horizontal. Its rod carries 3 m g sin φ at the angle φ below the horizontal, and breaks
+/// at 2 m g.
+pub(crate) const BREAKS: &str = r#"
+schema = "qhat/1"
+name = "Breaks"
+dimension = 2
+step = { h = 0.01, duration = 0.6, tolerance = 1e-9 }
+forces = { gravity = [0.0, -10.0] }
+particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = [1.0, 0.0] }]
+constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
+"#;
+
 /// A folder to work in, which is removed at the end of the test.
 pub(crate) struct Folder(TempDir);
 

@@ -114,7 +114,7 @@ impl<'a> Checker<'a, '_, '_> {
         if schema.is_tagged() || matches!(schema.text("type"), "object" | "array") { self.gap() } else { None }
     }
 
-    /// What a key is, with the number of entries that the dimension asks for.
+    /// The help for a key: its description, with the number of entries that the dimension asks for.
     fn help(&self, schema: SchemaNode<'a>, name: &str) -> String {
         let dimension = self.dimension.filter(|_| schema.is_vector());
         let entries = if schema.entry(self.root).is_some_and(|entry| entry.text("type") == "string") {

@@ -111,7 +111,7 @@ impl<'a> SchemaNode<'a> {
         }
     }
 
-    /// What a key is: the description in the schema, the allowed texts, and the default.
+    /// The help for a key: its description in the schema, the allowed texts, and the default.
     pub(super) fn help(&self, name: &str) -> String {
         let name = name.split('[').next().unwrap_or(name);
         let of_list = self.list.and_then(|list| list.get("description")).and_then(Json::as_str);

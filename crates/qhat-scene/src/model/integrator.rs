@@ -1,17 +1,9 @@
-//! The names of the integrators in scenes and commands: those of the engine, and synonyms.
+//! The integrator of a scene, by any of its names.
 
 use qhat::Integrator;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::borrow::Cow;
-
-/// Names beside those of the engine. `implicit` is the backward Euler method, which many readers know by that name.
-const SYNONYMS: [(&str, Integrator); 1] = [("backward-euler", Integrator::Implicit)];
-
-/// Every name by which a scene or a command may choose an integrator, with the integrator.
-pub fn integrator_names() -> impl Iterator<Item = (&'static str, Integrator)> {
-    Integrator::ALL.into_iter().map(|integrator| (integrator.name(), integrator)).chain(SYNONYMS)
-}
 
 /// An integrator, in a scene its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +18,7 @@ impl JsonSchema for Method {
         json_schema!({
             "description": "The integrator.",
             "type": "string",
-            "enum": integrator_names().map(|(name, _)| name).collect::<Vec<_>>(),
+            "enum": Integrator::names().map(|(name, _)| name).collect::<Vec<_>>(),
         })
     }
 }
@@ -39,9 +31,7 @@ impl Serialize for Method {
 
 impl<'de> Deserialize<'de> for Method {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let given = String::deserialize(deserializer)?;
-        let found = integrator_names().find(|(name, _)| *name == given);
-        found.map(|(_, integrator)| Method(integrator)).ok_or_else(|| de::Error::custom("unknown integrator"))
+        String::deserialize(deserializer)?.parse().map(Method).map_err(de::Error::custom)
     }
 }
 
@@ -53,7 +43,7 @@ mod tests {
     /// The first name of an integrator is the engine's own, so that reports and files use one name.
     #[test]
     fn every_name_chooses_its_integrator() {
-        for (name, integrator) in integrator_names() {
+        for (name, integrator) in Integrator::names() {
             assert_eq!(from_value::<Method>(json!(name)).unwrap(), Method(integrator));
             assert_eq!(to_value(Method(integrator)).unwrap(), json!(integrator.name()));
         }
@@ -63,9 +53,9 @@ mod tests {
 
     #[test]
     fn no_name_has_two_meanings() {
-        let mut names: Vec<&str> = integrator_names().map(|(name, _)| name).collect();
+        let mut names: Vec<&str> = Integrator::names().map(|(name, _)| name).collect();
         names.sort_unstable();
         names.dedup();
-        assert_eq!(names.len(), integrator_names().count());
+        assert_eq!(names.len(), Integrator::names().count());
     }
 }

@@ -16,8 +16,8 @@ pub(crate) struct Pulley {
     /// times is named as often.
     #[schemars(length(min = 2))]
     pub(crate) over: Vec<Id>,
-    /// How many times each stretch from one particle to the next counts, one number less than there are particles; 1
-    /// each if left out.
+    /// The weights of the stretches from one particle to the next, one number less than there are particles; 1 each if
+    /// left out.
     #[serde(default)]
     pub(crate) weights: Option<Vec<f64>>,
     /// The length of the rope [m], above 0, or an expression of t; the length at the start if left out.

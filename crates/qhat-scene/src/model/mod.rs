@@ -1,6 +1,6 @@
 //! The scene file as Rust types, the only list of its keys. The JSON Schema is made from these types, `check` follows
-//! the schema, and serde fills the types. The comment on a key is what the schema and the help of messages say about
-//! it.
+//! the schema, and serde fills the types. The comment on a key is its description in the schema and in the help of
+//! messages.
 
 pub(crate) mod body;
 pub(crate) mod constraint;
@@ -30,7 +30,6 @@ pub(crate) use driven::{Driven, DrivenVector};
 pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::Parameters;
 pub(crate) use generate::Generate;
-pub use integrator::integrator_names;
 pub(crate) use load::Load;
 pub(crate) use springs::Spring;
 pub(crate) use step::{Feedback, Forces, Step};

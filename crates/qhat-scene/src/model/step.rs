@@ -25,8 +25,8 @@ pub(crate) struct Step {
     /// error, or under auto goes to bdf2.
     #[schemars(range(min = 1))]
     pub(crate) max_substeps: u32,
-    /// The most Newton iterations that implicit and bdf2 may take in a frame, 1 or more; a warning says what
-    /// the frame did not reach.
+    /// The most Newton iterations that implicit and bdf2 may take in a frame, 1 or more; a frame that
+    /// needs more gives a warning with its remaining error.
     #[schemars(range(min = 1))]
     pub(crate) frame_budget: u32,
     /// The most row solves that auto may take in a frame before bdf2 replaces dop853, 1 or more.

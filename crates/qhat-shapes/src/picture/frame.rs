@@ -24,7 +24,7 @@ const LETTER: f64 = 0.56;
 pub(super) fn draw_background(view: &View<'_>, pen: &mut Pen) {
     let camera = &view.camera;
     let [width, height] = camera.size.map(number);
-    pen.element("rect", &[("width", &width), ("height", &height), ("fill", view.palette.background)]);
+    pen.element("rect", &[("width", &width), ("height", &height), ("fill", view.palette.canvas)]);
     if camera.dimension == 3 {
         return;
     }
@@ -54,7 +54,7 @@ pub(super) fn draw_labels(view: &View<'_>, pen: &mut Pen) {
     if !view.picture.note.is_empty() {
         time = format!("{time}, {}", view.picture.note);
     }
-    pen.text(&time, [EDGE, EDGE + 44.0], TIME, view.palette.muted, "start");
+    pen.text(&time, [EDGE, EDGE + 44.0], TIME, view.palette.outline, "start");
     if !view.picture.tension.is_empty() {
         draw_legend(view, pen, [EDGE, height - EDGE]);
     }
@@ -73,14 +73,14 @@ fn draw_legend(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
         let [x, y, wide, high] = [x + i as f64 * part, top, part, thickness].map(number);
         pen.element("rect", &[("x", &x), ("y", &y), ("width", &wide), ("height", &high), ("fill", colour)]);
     }
-    let muted = view.palette.muted;
+    let outline = view.palette.outline;
     let limit = format(view.limit, 3);
     for (text, at, anchor) in [("push", 0.0, "start"), ("pull", width, "end")] {
-        pen.text(text, [x + at, top - 6.0], SMALL, muted, anchor);
+        pen.text(text, [x + at, top - 6.0], SMALL, outline, anchor);
     }
     let [least, most] = [format!("−{limit} N"), format!("+{limit} N")];
     for (text, at, anchor) in [(least.as_str(), 0.0, "start"), ("0", 0.5 * width, "middle"), (&most, width, "end")] {
-        pen.text(text, [x + at, y], SMALL, muted, anchor);
+        pen.text(text, [x + at, y], SMALL, outline, anchor);
     }
     pen.close("g");
 }
@@ -92,8 +92,8 @@ fn draw_scale(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
     let text = format!("{} m", format(metres, 3));
     let mut path = Path::default();
     path.polygon([[x - length, y - 5.0], [x - length, y], [x, y], [x, y - 5.0]]);
-    pen.path("scale", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
-    pen.text(&text, [x - 0.5 * length, y - 8.0], SMALL, view.palette.muted, "middle");
+    pen.path("scale", &path, Stroke { colour: view.palette.outline, width: 1.5, dash: None, fill: 0.0 });
+    pen.text(&text, [x - 0.5 * length, y - 8.0], SMALL, view.palette.outline, "middle");
     if view.camera.dimension == 3 {
         draw_axes(view, pen, [x - 40.0, y - 66.0]);
     }
@@ -105,8 +105,8 @@ fn draw_axes(view: &View<'_>, pen: &mut Pen, [x, y]: Spot) {
         let [dx, dy] = [view.camera.right[k] * length, -view.camera.up[k] * length];
         let mut path = Path::default();
         path.segment([x, y], [x + dx, y + dy]);
-        pen.path("axis", &path, Stroke { colour: view.palette.muted, width: 1.5, dash: None, fill: 0.0 });
+        pen.path("axis", &path, Stroke { colour: view.palette.outline, width: 1.5, dash: None, fill: 0.0 });
         // The baseline lies a third of the text's size below the middle of the text.
-        pen.text(name, [x + 1.4 * dx, y + 1.4 * dy + SMALL / 3.0], SMALL, view.palette.muted, "middle");
+        pen.text(name, [x + 1.4 * dx, y + 1.4 * dy + SMALL / 3.0], SMALL, view.palette.outline, "middle");
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     let width = link_width(view.picture.tension.len());
     let mut stubs = Path::default();
     view.links().filter(|(shape, _)| view.is_broken(shape)).for_each(|(shape, _)| trace_stubs(view, shape, &mut stubs));
-    let stroke = Stroke { colour: view.palette.muted, width: 0.6 * width, dash: Some([3.0, 4.0]), fill: 0.0 };
+    let stroke = Stroke { colour: view.palette.outline, width: 0.6 * width, dash: Some([3.0, 4.0]), fill: 0.0 };
     pen.path("broken", &stubs, stroke);
 
     let mut drawn: Vec<(&Shape, usize)> =

@@ -80,7 +80,7 @@ impl Default for Options {
 impl Options {
     /// The least width and height \[px\]; title and legend need this much.
     pub const LEAST: u32 = 240;
-    /// The largest width and height \[px\]: a PNG of this size takes 256 MiB while it is drawn.
+    /// The largest width and height of a PNG \[px\]: a PNG of this size takes 256 MiB while it is drawn.
     pub const MOST: u32 = 8192;
 }
 
@@ -108,7 +108,7 @@ impl Reading {
 pub fn svg(picture: &Picture<'_>, options: &Options) -> String {
     let shapes = crate::list::shapes_at(picture.system, picture.state, picture.time);
     let view = View::new(picture, options, &shapes);
-    let mut pen = Pen::new(view.palette.background);
+    let mut pen = Pen::new(view.palette.canvas);
     pen.open_document(picture.name, options.size, view.camera.size);
     frame::draw_background(&view, &mut pen);
     styles::draw(&view, &mut pen);

@@ -10,7 +10,7 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
     if view.camera.dimension == 3 {
         order.sort_by(|&i, &k| view.screen[i][2].total_cmp(&view.screen[k][2]));
     }
-    pen.open("g", &[("class", "particles"), ("fill", view.palette.particle), ("stroke", view.palette.background)]);
+    pen.open("g", &[("class", "particles"), ("fill", view.palette.particle), ("stroke", view.palette.canvas)]);
     for i in order {
         let fixed = system.inverse_masses()[i] == 0.0;
         let radius = view.radii[i];

@@ -11,7 +11,7 @@ use crate::shape::{Shape, ShapeKind};
 #[derive(Clone, Copy)]
 enum Colour {
     Ink,
-    Muted,
+    Outline,
     Guide,
     Background,
     Accent,
@@ -43,29 +43,29 @@ const fn filled(style: Style, fill: f64) -> Style {
     Style { fill, ..style }
 }
 
-use Colour::{Accent, Background, Guide, Ink, Muted, Spring};
+use Colour::{Accent, Background, Guide, Ink, Outline, Spring};
 use ShapeKind as Kind;
 
 /// A rod has no style: it is drawn in the colour of its tension, with the taut ropes and struts.
 const STYLES: &[Style] = &[
     filled(style(&[Kind::Area], Accent, 0.0, surfaces::trace_area), 0.14),
-    style(&[Kind::Ground], Muted, 1.25, surfaces::trace_ground),
+    style(&[Kind::Ground], Outline, 1.25, surfaces::trace_ground),
     style(&[Kind::Plane, Kind::Ground], Guide, 1.0, surfaces::trace_plane),
-    filled(style(&[Kind::Ball], Muted, 1.5, surfaces::trace_ball), 0.16),
-    style(&[Kind::Bowl], Muted, 1.5, surfaces::trace_ball),
+    filled(style(&[Kind::Ball], Outline, 1.5, surfaces::trace_ball), 0.16),
+    style(&[Kind::Bowl], Outline, 1.5, surfaces::trace_ball),
     style(&[Kind::Ball, Kind::Bowl], Guide, 1.0, surfaces::trace_great_circles),
-    filled(style(&[Kind::Box], Muted, 1.5, surfaces::trace_box), 0.16),
-    filled(style(&[Kind::Wheel], Muted, 2.0, surfaces::trace_wheel), 0.12),
+    filled(style(&[Kind::Box], Outline, 1.5, surfaces::trace_box), 0.16),
+    filled(style(&[Kind::Wheel], Outline, 2.0, surfaces::trace_wheel), 0.12),
     style(&[Kind::Wire, Kind::Line, Kind::Ring], Guide, 5.0, curves::trace_guide),
     style(&[Kind::Wire, Kind::Line, Kind::Ring], Background, 2.0, curves::trace_guide),
-    dashed(style(&[Kind::Tie], Muted, 1.5, links::trace_between), [1.5, 5.0]),
+    dashed(style(&[Kind::Tie], Outline, 1.5, links::trace_between), [1.5, 5.0]),
     dashed(style(&[Kind::Rope], Ink, 1.25, links::trace_slack), [4.0, 4.0]),
     style(&[Kind::Cord, Kind::Rope], Ink, 1.75, links::trace_taut),
-    style(&[Kind::Strut], Muted, 4.0, links::trace_pressed),
-    dashed(style(&[Kind::Strut], Muted, 2.0, links::trace_loose), [6.0, 5.0]),
+    style(&[Kind::Strut], Outline, 4.0, links::trace_pressed),
+    dashed(style(&[Kind::Strut], Outline, 2.0, links::trace_loose), [6.0, 5.0]),
     style(&[Kind::Spring], Spring, 1.5, glyphs::trace_coil),
-    style(&[Kind::DrivenRod, Kind::Actuator], Muted, 2.5, links::trace_between),
-    style(&[Kind::DrivenRod, Kind::Actuator], Muted, 7.0, links::trace_piston),
+    style(&[Kind::DrivenRod, Kind::Actuator], Outline, 2.5, links::trace_between),
+    style(&[Kind::DrivenRod, Kind::Actuator], Outline, 7.0, links::trace_piston),
     style(&[Kind::Angle], Accent, 2.0, curves::trace_angle),
     style(&[Kind::Nail], Ink, 1.5, glyphs::trace_nail),
 ];
@@ -79,9 +79,9 @@ pub(super) fn draw(view: &View<'_>, pen: &mut Pen) {
         }
         let colour = match style.colour {
             Ink => view.palette.ink,
-            Muted => view.palette.muted,
+            Outline => view.palette.outline,
             Guide => view.palette.guide,
-            Background => view.palette.background,
+            Background => view.palette.canvas,
             Accent => view.palette.accent,
             Spring => view.palette.spring,
         };
