@@ -100,6 +100,26 @@ fn every_link_in_a_document_leads_somewhere() {
     assert!(links > 5, "the search for links found only {links}");
 }
 
+/// Every line of Rust in README.md, and of the profile that it asks for, stands in the head of `lib.rs`, whose example
+/// the documentation tests run.
+#[test]
+fn code_in_the_readme_is_that_of_the_crate() {
+    let readme = read("README.md");
+    let source = read("crates/qhat/src/lib.rs");
+    let known: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("//!")).map(str::trim).collect();
+    let block = |language: &str, from: &str| -> Vec<String> {
+        let text = readme.split(language).find(|text| text.contains(from)).unwrap().split("```").next().unwrap();
+        let lines = text.lines().map(str::trim).skip_while(|line| *line != from);
+        lines.filter(|line| !line.is_empty()).map(String::from).collect()
+    };
+    let program = block("```rust\n", "let mut builder = System::builder(Dimension::Two);");
+    let profile = block("```toml\n", "[profile.dev.package.qhat]");
+    assert!(program.len() > 8 && profile.len() == 7, "{program:?} {profile:?}");
+    for line in program.iter().chain(&profile) {
+        assert!(known.contains(&line.as_str()), "README.md has a line that the head of lib.rs lacks:\n{line}");
+    }
+}
+
 /// The worked example names a file in the head of each step, and quotes lines of it. Its tests exist by these names.
 #[test]
 fn adding_a_constraint_quotes_the_tree() {
