@@ -83,18 +83,30 @@ fn every_path_named_in_a_document_exists() {
     assert!(named > 30, "the search for paths found only {named}");
 }
 
+/// The name by which a link finds a heading.
+fn heading(line: &str) -> String {
+    let text = line.trim_start_matches('#').trim().to_lowercase();
+    text.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
 #[test]
 fn every_link_in_a_document_leads_somewhere() {
     let mut links = 0;
     for document in documents() {
         let folder = root().join(&document).parent().unwrap().to_path_buf();
         for target in read(&document).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            if target.starts_with('#') || target.contains(':') {
+            if target.contains(':') {
                 continue;
             }
             links += 1;
-            let path = target.split('#').next().unwrap();
-            assert!(folder.join(path).exists(), "{document} links to {target}, which does not exist");
+            let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
+            let path = if path.is_empty() { root().join(&document) } else { folder.join(path) };
+            assert!(path.exists(), "{document} links to {target}, which does not exist");
+            if !anchor.is_empty() {
+                let text = fs::read_to_string(&path).unwrap();
+                let has_heading = text.lines().filter(|line| line.starts_with('#')).any(|line| heading(line) == anchor);
+                assert!(has_heading, "{document} links to {target}, and no heading has that name");
+            }
         }
     }
     assert!(links > 5, "the search for links found only {links}");
