@@ -114,7 +114,7 @@ export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {
 };
 
 /** Gravity as one signed number along the direction in which the scene's own gravity pulls. */
-export function gravitySize(gravity: readonly number[], down: readonly number[]): number {
+function gravitySize(gravity: readonly number[], down: readonly number[]): number {
   // + 0 turns −0, which a weightless scene would show, into 0
   return gravity.reduce((sum, component, k) => sum + component * down[k], 0) + 0;
 }

@@ -1,4 +1,5 @@
-//! Colours, the same as on the page (playground/src/style/base.css and playground/src/view/palette.ts).
+//! Colours, the same as on the page (`playground/src/style/colours.css`); `playground/tests/unit/palette.test.ts`
+//! compares both.
 //!
 //! Tension is blue and compression orange. People with any common kind of colour blindness can tell the two apart, and
 //! both differ in lightness from the grey of a link without load.
