@@ -105,8 +105,8 @@ export const COMMANDS = [
   {
     id: 'compare',
     keys: ['g'],
-    label: () => 'Run a ghost beside it',
-    help: 'compare with the ghost',
+    label: () => 'Run a ghost beside the scene',
+    help: 'compare with a ghost: a second run, by another method',
     enabled: withScene,
     run: ({ comparison }) => comparison.setOn(!comparison.on),
   },

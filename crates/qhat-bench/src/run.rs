@@ -47,8 +47,8 @@ impl Outcome {
 /// positions and velocities at the end of every frame; its time is not counted.
 ///
 /// # Errors
-/// A workload that is too large, settings out of range, or a start that cannot be made consistent. A step that fails ends the run, and
-/// [`Outcome::ended`] has the error.
+/// A workload that is too large, settings out of range, or a start that cannot be made consistent. A step that fails
+/// ends the run, and [`Outcome::ended`] has the error.
 pub fn run(
     workload: &Workload,
     setting: &Setting,

@@ -103,6 +103,20 @@ fn every_command_in_the_documents_runs() {
     }
 }
 
+#[test]
+fn every_key_of_a_summary_stands_in_the_guide() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/command.md");
+    let guide = std::fs::read_to_string(path).unwrap();
+    let folder = Folder::new();
+    for arguments in [&["run", "pendulum", "--duration", "0.1", "--json"][..], &["check", "pendulum", "--json"]] {
+        let summary = folder.qhat(arguments).well().json();
+        let keys = summary.as_object().unwrap();
+        assert!(keys.len() > 10, "{arguments:?}: {summary}");
+        let missing: Vec<_> = keys.keys().filter(|key| !guide.contains(&format!("`{key}`"))).collect();
+        assert!(missing.is_empty(), "docs/command.md lacks {missing:?} of {arguments:?}");
+    }
+}
+
 /// Whether a line of a document occurs in the output of a command; `…` stands for text that differs from run to run.
 #[cfg(unix)]
 fn is_said(shown: &str, said: &str) -> bool {

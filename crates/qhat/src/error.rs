@@ -96,7 +96,8 @@ pub enum StepError {
     },
     /// The frame would need more substeps than allowed.
     #[error(
-        "at t = {} s the frame needs more than {max_substeps} substeps: raise max_substeps or the tolerance, or use auto",
+        "at t = {} s the frame needs more than {max_substeps} substeps: raise max_substeps or the tolerance, or use \
+         auto",
         shown(*time)
     )]
     TooManySubsteps {

@@ -99,7 +99,8 @@
 //! # Debug builds
 //!
 //! The profile of a dependency does not count in the program that depends on it, so a debug build of your program
-//! compiles qhat without optimisation. These eight lines in the `Cargo.toml` of your workspace make it as fast as a release build:
+//! compiles qhat without optimisation. These eight lines in the `Cargo.toml` of your workspace make it as fast as a
+//! release build:
 //!
 //! ```toml
 //! [profile.dev.package.qhat]

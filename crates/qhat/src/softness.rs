@@ -6,9 +6,10 @@
 //! (A + R) λ = −(γ + J W Q) − ks C − kd Ċ           R in the units of A, ks [1/s²], kd [1/s]
 //! ```
 //!
-//! with the force λ. At rest under a load C = −R λ/ks: its compliance is α = R/ks. The notations of other engines say the
-//! same with other letters; each function below translates one. Notations of the velocity level (ODE, the implicit
-//! spring, Box2D) leave out γ, which is of the order of their own error. XPBD takes the next step's linearisation instead.
+//! with the force λ. At rest under a load C = −R λ/ks: its compliance is α = R/ks. The notations of other engines say
+//! the same with other letters; each function below translates one. Notations of the velocity level (ODE, the implicit
+//! spring, Box2D) leave out γ, which is of the order of their own error. XPBD takes the next step's linearisation
+//! instead.
 //!
 //! | elsewhere | R | ks | kd |
 //! |---|---|---|---|
@@ -40,8 +41,8 @@ impl SoftRow {
     }
 
     /// The elasticity of [`Feedback`](crate::Feedback), in [0, 1), which scales Q̂ by s = 1 − elasticity, on a row that
-    /// is coupled to no other: `diagonal` is its A_ii. The λ of this row is what is applied, s times the λ of the equation without R. (For
-    /// coupled rows R is (1/s − 1) A, the whole matrix.)
+    /// is coupled to no other: `diagonal` is its A_ii. The λ of this row is what is applied, s times the λ of the
+    /// equation without R. (For coupled rows R is (1/s − 1) A, the whole matrix.)
     pub fn from_elasticity(elasticity: f64, diagonal: f64, ks: f64, kd: f64) -> Self {
         let s = 1.0 - elasticity;
         SoftRow { R: (1.0 / s - 1.0) * diagonal, ks, kd }

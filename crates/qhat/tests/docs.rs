@@ -93,21 +93,53 @@ fn every_path_named_in_a_document_exists() {
     assert!(named > 30, "the search for paths found only {named}");
 }
 
+/// The name by which a link finds a heading.
+fn heading(line: &str) -> String {
+    let text = line.trim_start_matches('#').trim().to_lowercase();
+    text.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
 #[test]
 fn every_link_in_a_document_leads_somewhere() {
     let mut links = 0;
     for document in documents() {
         let folder = root().join(&document).parent().unwrap().to_path_buf();
         for target in read(&document).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            if target.starts_with('#') || target.contains(':') {
+            if target.contains(':') {
                 continue;
             }
             links += 1;
-            let path = target.split('#').next().unwrap();
-            assert!(folder.join(path).exists(), "{document} links to {target}, which does not exist");
+            let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
+            let path = if path.is_empty() { root().join(&document) } else { folder.join(path) };
+            assert!(path.exists(), "{document} links to {target}, which does not exist");
+            if !anchor.is_empty() {
+                let text = fs::read_to_string(&path).unwrap();
+                let has_heading = text.lines().filter(|line| line.starts_with('#')).any(|line| heading(line) == anchor);
+                assert!(has_heading, "{document} links to {target}, and no heading has that name");
+            }
         }
     }
     assert!(links > 5, "the search for links found only {links}");
+}
+
+/// Every line of Rust in README.md, and of the profile that it asks for, stands in the head of `lib.rs`, whose example
+/// the documentation tests run.
+#[test]
+fn code_in_the_readme_is_that_of_the_crate() {
+    let readme = read("README.md");
+    let source = read("crates/qhat/src/lib.rs");
+    let known: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("//!")).map(str::trim).collect();
+    let block = |language: &str, from: &str| -> Vec<String> {
+        let text = readme.split(language).find(|text| text.contains(from)).unwrap().split("```").next().unwrap();
+        let lines = text.lines().map(str::trim).skip_while(|line| *line != from);
+        lines.filter(|line| !line.is_empty()).map(String::from).collect()
+    };
+    let program = block("```rust\n", "let mut builder = System::builder(Dimension::Two);");
+    let profile = block("```toml\n", "[profile.dev.package.qhat]");
+    assert!(program.len() > 8 && profile.len() == 7, "{program:?} {profile:?}");
+    for line in program.iter().chain(&profile) {
+        assert!(known.contains(&line.as_str()), "README.md has a line that the head of lib.rs lacks:\n{line}");
+    }
 }
 
 /// The worked example names a file in the head of each step, and quotes lines of it. Its tests exist by these names.

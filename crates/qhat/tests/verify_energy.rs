@@ -42,7 +42,8 @@ fn long_whipping_chains_keep_length_and_energy_under_dop853() {
         }
         // Twice the tolerance of 1e-4: errors of substeps add up, but most of the error is made in the crack.
         assert!(simulation.energy_error_max() < 2e-4, "{heavy}: {:e}", simulation.energy_error_max());
-        // Some 450 and 880, where RATTLE takes ten times more (`benches/results/workloads.csv`), because the order is 8.
+        // Some 450 and 880, where RATTLE takes ten times more (`benches/results/workloads.csv`), because the order is
+        // 8.
         assert!(substeps < 1000, "{heavy}: {substeps} substeps");
     }
 }

@@ -229,8 +229,8 @@ fn long_a_compliant_rod_sags_by_its_compliance() {
         for _ in 0..4000 {
             simulation.step().unwrap();
         }
-        // e⁻ᵏᵗ with k = 16/s is over after 2 s; a compliant row is solved to half of 1e-10 of its length times 1 + α c/h
-        // = 201.
+        // e⁻ᵏᵗ with k = 16/s is over after 2 s; a compliant row is solved to half of 1e-10 of its length times 1 + α
+        // c/h = 201.
         assert_close(&format!("{integrator}: y"), simulation.state().positions()[3], -1.0 - compliance * weight, 2e-8);
         assert_close(&format!("{integrator}: tension"), simulation.tension()[0], weight, 2e-5);
         assert_close(&format!("{integrator}: λ"), simulation.terms().multipliers[0], -weight, 2e-5);

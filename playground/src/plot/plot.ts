@@ -20,7 +20,7 @@ export interface PlotOptions {
 }
 
 /** A residual of exactly zero has no logarithm and is drawn at this value, a hundredth of the roundoff of a metre. */
-export const FLOOR = 1e-18;
+const FLOOR = 1e-18;
 
 export class Plot {
   private readonly plot: uPlot;

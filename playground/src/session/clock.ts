@@ -9,7 +9,7 @@ export interface ClockReading {
 }
 
 /** The wall time a frame may spend stepping; the rest of 16.7 ms is for drawing and the browser. */
-export const STEP_BUDGET_MS = 10;
+const STEP_BUDGET_MS = 10;
 
 /** A frame later than this, in s, comes from a page that was hidden and not from slow steps: the rest is dropped. */
 const LONGEST_FRAME_S = 0.1;

@@ -16,7 +16,7 @@ export interface ControlSpec {
   feedback: boolean;
 }
 
-/** The two menus of the source. */
+/** The two menus of the first program. */
 export const MENUS: readonly ControlSpec[] = [
   {
     key: 'diagonal_drag',
@@ -92,7 +92,8 @@ export const STEP: ControlSpec = {
 
 export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
   auto: 'dop853, or bdf2 where the motion is so stiff that dop853 cannot finish a frame in time.',
-  euler: 'The source’s method: the force at the start acts over the whole step. It drifts and gains energy.',
+  euler:
+    'The method of the first program: the force at the start acts over the whole step. It drifts and gains energy.',
   'symplectic-euler':
     'Velocities first, then positions with the new velocities: energy stays close, the constraints still drift.',
   rk4: 'Four force evaluations a step: small drift, never corrected without feedback.',
@@ -109,11 +110,11 @@ export const FORMULATION_SENTENCES: Record<Controls['formulation'], string> = {
   mixed: 'This scene mixes both forms; a choice here changes all constraints.',
   modern: 'C = |d| − r and x − p: λ is a force in newtons, and the nail holds.',
   classic:
-    'The source’s C = dᵀd − r² and |x − p|², whose gradient vanishes where the nail holds its particle.',
+    'C = d·d − r² and |x − p|², as in the first program. The gradient of |x − p|² is zero where the nail holds.',
 };
 
 /** Gravity as one signed number along the direction in which the scene's own gravity pulls. */
-export function gravitySize(gravity: readonly number[], down: readonly number[]): number {
+function gravitySize(gravity: readonly number[], down: readonly number[]): number {
   // + 0 turns −0, which a weightless scene would show, into 0
   return gravity.reduce((sum, component, k) => sum + component * down[k], 0) + 0;
 }

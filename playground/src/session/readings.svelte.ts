@@ -16,8 +16,10 @@ const PANEL_INTERVAL_MS = 100;
 /** Time for which a warning is shown after the last step that raised it, ms. A warning of a single step would flash. */
 const WARNING_STAYS_MS = 3000;
 
-/** Traces of the history, in this order. */
-export const TRACES = ['time', 'kinetic', 'potential', 'total', 'missing', 'residual', 'ghost'] as const;
+/** Traces of the history, in this order: time in s, energies in J, max |C| of the run and of the ghost. */
+const TRACES = ['time', 'kinetic', 'potential', 'total', 'missing', 'residual', 'ghost'] as const;
+
+export type TraceName = (typeof TRACES)[number];
 
 export class Readings {
   /** s */
@@ -35,9 +37,6 @@ export class Readings {
   solver = $state.raw<StepReport['solver'] | null>(null);
   /** the last events, newest first */
   events = $state.raw<readonly StepEvent[]>([]);
-  /** max |C| of the run and of the ghost */
-  residual = $state(0);
-  ghostResidual = $state(0);
   /** the particle or link that a person clicked */
   selection = $state.raw<Selection>(null);
   /** every symbol of the state shown; null while no panel needs it */
@@ -45,7 +44,7 @@ export class Readings {
   termsOpen = $state(false);
   /** counts the refreshes */
   tick = $state(0);
-  readonly history = new History(TRACES.length);
+  private readonly history = new History(TRACES.length);
   private lastRefreshMs = 0;
   private warnedMs = -Infinity;
   /** the last events, including events that the next refresh will show */
@@ -59,6 +58,7 @@ export class Readings {
   ) {
     session.closing.listen(() => {
       this.selection = null;
+      this.terms = null;
     });
     session.controlsSettled.listen(() => this.refresh());
     playback.restarted.listen(() => this.begin());
@@ -75,6 +75,16 @@ export class Readings {
   setTermsOpen(open: boolean): void {
     this.termsOpen = open;
     this.refresh();
+  }
+
+  /** One trace, oldest value first; null where the trace has no value. */
+  trace(name: TraceName): (number | null)[] {
+    return this.history.trace(TRACES.indexOf(name));
+  }
+
+  /** The newest value of a trace; NaN if the trace has none. */
+  last(name: TraceName): number {
+    return this.history.last(TRACES.indexOf(name));
   }
 
   /** Refreshes the panels of a scene that moves, if the time for a refresh has come. */
@@ -128,8 +138,6 @@ export class Readings {
     this.tooStiff = choice?.too_stiff ?? null;
     this.solver = report?.solver ?? null;
     this.events = this.lastEvents;
-    this.residual = report?.max_residual ?? 0;
-    this.ghostResidual = this.comparison.ghost?.report?.max_residual ?? 0;
     const wanted = this.termsOpen || this.selection !== null || !running;
     this.terms = wanted ? this.readTerms() : null;
     // the warnings of a paused state are those of the state and not of the last step

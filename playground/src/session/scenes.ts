@@ -1,6 +1,6 @@
 // The sources of scene texts: the shipped scenes of the engine, and the command that serves the page.
 
-import { type Shipped, shippedScenes } from '../engine';
+import { shippedScenes } from '../engine';
 
 export interface SceneSource {
   /** the name in the address; null for a scene that came from the command */
@@ -11,15 +11,11 @@ export interface SceneSource {
 
 export function shipped(name: string): SceneSource | null {
   const scene = shippedScenes().find((candidate) => candidate.name === name);
-  return scene ? fromShipped(scene) : null;
-}
-
-export function fromShipped({ name, text }: Shipped): SceneSource {
-  return { name, fileName: `${name}.toml`, text };
+  return scene ? { name, fileName: `${name}.toml`, text: scene.text } : null;
 }
 
 /** The header in which `qhat play` names the file that /scene holds, percent-encoded. */
-export const FILE_NAME_HEADER = 'x-qhat-scene-name';
+const FILE_NAME_HEADER = 'x-qhat-scene-name';
 
 /** The scene of `qhat play SCENE`; null if another program serves the page. */
 export async function sceneFromCommand(): Promise<SceneSource | null> {

@@ -5,6 +5,7 @@ import type { Page } from '../page';
 import { unbroken } from '../session/links';
 import { niceCeiling } from '../session/numbers';
 import { boxOfMotion } from '../session/preview';
+import { Signal } from '../session/signal';
 import { type Box, Camera } from './camera';
 import { CanvasView } from './canvas';
 import type { Arrow, Picture, Selection } from './picture';
@@ -26,7 +27,8 @@ export class Stage {
   tensionLimit = 1;
   /** the largest recent tension, N: a maximum that decays */
   private largest = 0;
-  onTensionLimit: (limit: number) => void = () => {};
+  /** The ends of the colour scale changed, N. */
+  readonly tensionLimitChanged = new Signal<[number]>();
   private box: Box | null = null;
   private request = 0;
   /** true until a person moves the view: until then the view is fitted to a changed window */
@@ -181,7 +183,7 @@ export class Stage {
     const limit = niceCeiling(this.largest);
     if (limit === this.tensionLimit) return;
     this.tensionLimit = limit;
-    this.onTensionLimit(limit);
+    this.tensionLimitChanged.send(limit);
   }
 
   private arrows(): Arrow[] {

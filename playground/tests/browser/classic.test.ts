@@ -3,7 +3,7 @@ import { atStart, enter, laboratory, state, step } from './page';
 
 const lab = laboratory();
 
-it('shows the drift of the source’s euler beside rattle', async () => {
+it('shows the drift of the first program’s euler beside rattle', async () => {
   const { page } = await lab.open('/?scene=pendulum');
   await page.evaluate(() => window.qhat.pause());
   await page.getByTestId('compare').check();
@@ -37,7 +37,7 @@ it('shows a singular A calmly and lives on: scalar nail, ε = 0', async () => {
     () => window.qhat.structure()!.shapes.filter(({ kind }) => kind === 'nail').length,
   );
   expect(rank).toBe(rows - nails);
-  // past that instant the source's method goes on, until it explodes, which is why it had the menu
+  // past that instant explicit Euler goes on until it explodes, which is why the first program had the menu
   await step(page, 3);
   const { time, stopped, positions } = await state(page);
   expect(time).toBeCloseTo(3 * (await page.evaluate(() => window.qhat.controls()!.h)), 12);

@@ -120,7 +120,7 @@ it('the controls of the feedback say that rattle does not use them', async () =>
   const before = (await after(page, 50)).positions;
   await enter(page, 'ks', 100);
   await enter(page, 'elasticity', 0.5);
-  // what the page says is what the engine does
+  // the engine confirms the note: it ignores both controls
   expect((await after(page, 50)).positions).toEqual(before);
   await page.getByTestId('integrator-rk4').check();
   expect(await page.getByTestId('unused-ks').count()).toBe(0);

@@ -55,6 +55,19 @@ it('says so where the address names no scene, and offers one', async () => {
   expect(errors).toEqual([]);
 });
 
+it('shows no panel of the former scene where the next cannot be opened', async () => {
+  const { page, errors } = await lab.open('/?scene=pendulum');
+  await page.getByTestId('tab-terms').click();
+  expect(await page.getByTestId('terms').count()).toBe(1);
+  await page.evaluate(() => {
+    history.pushState(null, '', '?scene=nowhere');
+    window.dispatchEvent(new PopStateEvent('popstate'));
+  });
+  await page.getByTestId('failure').waitFor();
+  expect(await page.getByTestId('terms').count()).toBe(0);
+  expect(errors).toEqual([]);
+});
+
 it('opens the scene that the command serves, with its errors in words', async () => {
   const pendulum = `schema = "qhat/1"
 name = "From the <i>command</i>"

@@ -112,9 +112,10 @@ export const lengthError = (page: Page) =>
     const { positions } = window.qhat.state();
     const d = structure.dimension;
     const point = (i: number) => positions.slice(d * i, d * i + d);
+    const rods = structure.links.filter(({ kind }) => kind === 'rod');
+    if (rods.length === 0) throw new Error('This scene has no rods.');
     return Math.max(
-      ...structure.links.map(({ kind, size, particles: [a, b] }) => {
-        if (kind !== 'rod') return 0;
+      ...rods.map(({ size, particles: [a, b] }) => {
         const other = point(b);
         return Math.abs(Math.hypot(...point(a).map((x, k) => x - other[k])) - size);
       }),

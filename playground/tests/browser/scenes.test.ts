@@ -24,7 +24,7 @@ it('opens and plays every shipped scene, each under a heading', async () => {
       window.qhat.pause();
       window.qhat.reset();
     });
-    // where the scene begins lies on the canvas
+    // every particle at the start lies on the canvas
     const outside = await page.evaluate(() => {
       const { masses } = window.qhat.structure()!;
       return Array.from(masses, (_, i) => window.qhat.screen(i)).filter(

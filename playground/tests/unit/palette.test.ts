@@ -1,6 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { TENSION_STEPS, tensionStep } from '../../src/view/palette';
+import { STYLES } from '../../src/view/shapes/styles';
 import { colours } from './colours';
 
 type Rgb = [number, number, number];
@@ -55,4 +56,26 @@ it('colours stand in colours.css and nowhere else', () => {
   expect(files.length).toBeGreaterThan(40);
   const literal = /#[0-9a-f]{6}\b|#[0-9a-f]{3}\b|\b(rgb|hsl)a?\(\s*\d/i;
   expect(files.filter((file) => literal.test(readFileSync(new URL(file, source), 'utf8')))).toEqual([]);
+});
+
+/** A source file of the crate that draws pictures for `qhat render`. */
+const drawing = (name: string) =>
+  readFileSync(new URL(`../../../crates/qhat-shapes/src/picture/${name}`, import.meta.url), 'utf8');
+
+it('pictures of the command have the strokes of the page', () => {
+  const pattern = /style\(&\[([^\]]+)\], (\w+), ([\d.]+), [\w:]+\)(?:, \[([\d., ]+)\]\)|, ([\d.]+)\))?,\n/g;
+  const kebab = (name: string) => name.replace(/(?<=[a-z])[A-Z]/g, (letter) => `-${letter}`).toLowerCase();
+  const theirs = [...drawing('styles.rs').matchAll(pattern)].map(([, kinds, colour, width, dash, fill]) => ({
+    kinds: kinds.split(', ').map((kind) => kebab(kind.replace('Kind::', ''))),
+    colour: kebab(colour),
+    width: Number(width),
+    dash: dash?.split(', ').map(Number),
+    fill: fill === undefined ? undefined : Number(fill),
+  }));
+  const ours = STYLES.map(({ kinds, colour, width, dash, fill }) => ({ kinds, colour, width, dash, fill }));
+  // the page draws nails in a layer of their own
+  const shown = theirs.filter(({ kinds }) => !kinds.includes('nail'));
+  expect(shown.length).toBe(theirs.length - 1);
+  const inOrder = (styles: readonly object[]) => styles.map((style) => JSON.stringify(style)).sort();
+  expect(inOrder(shown)).toEqual(inOrder(ours));
 });

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Shape, Structure } from '../../src/engine';
-import type { Layer } from '../../src/view/brush';
+import { type Layer, particlesOnScreen } from '../../src/view/brush';
 import { Camera } from '../../src/view/camera';
 import { drawNails } from '../../src/view/layers/nails';
 import { drawShapes } from '../../src/view/layers/shapes';
@@ -28,12 +28,7 @@ function drawnBy(layer: Layer, ...shapes: Partial<Shape>[]): string[] {
   const camera = new Camera(2);
   [camera.width, camera.height] = [800, 600];
   const positions = Float64Array.from([0, 0, 3, 0]);
-  const screen = new Float64Array(6);
-  const at = [0, 0, 0];
-  for (const i of [0, 1]) {
-    camera.project(positions, i, at);
-    screen.set(at, 3 * i);
-  }
+  const screen = particlesOnScreen(camera, positions);
   const whole = shapes.map((shape) => ({
     kind: 'tie' as const,
     particles: [0, 1],

@@ -148,8 +148,8 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
     Ok(Ending { status: Status::Done, message: None })
 }
 
-/// The places of broken links. A trajectory has tensions and positions only, so a link counts as broken if it can break,
-/// carries nothing and has a length out of its limits.
+/// The places of broken links. A trajectory has tensions and positions only, so a link counts as broken if it can
+/// break, carries nothing and has a length out of its limits.
 fn broken(system: &System, state: &State, tension: &[f64]) -> Vec<usize> {
     let (d, q) = (system.dimension(), state.positions());
     let distance = |a: ParticleId, b: ParticleId| {

@@ -30,8 +30,8 @@ const ROUNDOFF: f64 = 1e-10;
 /// Passes for each touching contact, and for four more: problems that end at all end in far fewer.
 const PASSES: usize = 8;
 
-/// Number of times that directions of slip are aligned with the slip. Each time the error shrinks by the part that friction has
-/// in the slip.
+/// Number of times that directions of slip are aligned with the slip. Each time the error shrinks by the part that
+/// friction has in the slip.
 const ALIGNMENTS: usize = 10;
 
 /// A contact that touches.

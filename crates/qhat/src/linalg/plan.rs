@@ -75,8 +75,8 @@ pub struct Component {
 }
 
 /// Least number of unknowns at a point that makes it a hub. A point that is eliminated into A couples all its unknowns
-/// with each other. A star of 30 spokes takes 3.6 µs with this clique and 1.3 µs with a hub (star30 of `timed_solves` in
-/// `multiplier/tests.rs`). Matrices with fewer unknowns at each point are mostly small and factored densely.
+/// with each other. A star of 30 spokes takes 3.6 µs with this clique and 1.3 µs with a hub (star30 of `timed_solves`
+/// in `multiplier/tests.rs`). Matrices with fewer unknowns at each point are mostly small and factored densely.
 pub(crate) const HUB_FROM: usize = 32;
 
 /// Least number of operations for each entry of L with which the multifrontal method is chosen. A net of 10 × 10 (9

@@ -1,5 +1,5 @@
-//! Readings of the present state: positions, tensions, reactions, and every symbol of the equation. A reading changes no
-//! later result.
+//! Readings of the present state: positions, tensions, reactions, and every symbol of the equation. A reading changes
+//! no later result.
 
 use super::Simulation;
 use crate::constraint::Link;
@@ -36,7 +36,8 @@ impl Simulation {
         std::array::from_fn(|k| own.get(k).copied().unwrap_or(0.0))
     }
 
-    /// The particle nearest to a point \[m\], fixed or not, if it is within a distance \[m\]: the particle under a cursor.
+    /// The particle nearest to a point \[m\], fixed or not, if it is within a distance \[m\]: the particle under a
+    /// cursor.
     pub fn nearest(&self, point: impl Into<Vector>, within: f64) -> Option<ParticleId> {
         let point = point.into().0;
         in_dimension!(self.system.dimension, D => {

@@ -8,16 +8,16 @@ use qhat::{
     Purpose, Relation, Surface, Volume, rigid_rods,
 };
 
-/// The kinds by the numbers of dimensions they can be in; the kinds behind `equality` hold C = 0 over a motion. The test
-/// below fails if a kind is missing: name a new kind here, then add its cases.
+/// The kinds by the numbers of dimensions they can be in; the kinds behind `equality` hold C = 0 over a motion. The
+/// test below fails if a kind is missing: name a new kind here, then add its cases.
 macro_rules! kinds {
     ($(in $dimensions:expr; equality $($equality:ident)*; other $($other:ident)*;)*) => {
         /// Name, dimensions, and whether it is an equality.
         pub(super) const KINDS: &[(&str, &[usize], bool)] =
             &[$($((stringify!($equality), &$dimensions, true),)* $((stringify!($other), &$dimensions, false),)*)*];
 
-        /// The match does not compile if the list names a kind that the engine lacks. The test fails if the list lacks a
-        /// kind of the engine.
+        /// The match does not compile if the list names a kind that the engine lacks. The test fails if the list lacks
+        /// a kind of the engine.
         #[test]
         fn the_list_names_every_kind_of_the_engine() {
             fn kind(constraint: &Constraint) -> &'static str {

@@ -37,7 +37,8 @@ fn along(q: &[f64], v: &[f64], tau: f64) -> Vec<f64> {
     q.iter().zip(v).map(|(q, v)| q + tau * v).collect()
 }
 
-/// Compares the rows of `at(q, τ)`, the terms at positions q and the velocities v at the time τ, with their differences.
+/// Compares the rows of `at(q, τ)`, the terms at positions q and the velocities v at the time τ, with their
+/// differences.
 fn compare(name: &str, tolerance: f64, q: &[f64], v: &[f64], at: impl Fn(Vec<f64>, f64) -> Terms) {
     let check = |symbol: &str, actual: &[f64], slope: &[f64]| {
         assert_all_close(&format!("{name}: {symbol}"), actual, slope, tolerance);
@@ -151,8 +152,8 @@ fn every_kind_that_can_be_driven_is_driven_in_some_case() {
     }
 }
 
-/// The kinds that may depend on time: kinds whose fields hold a number or a point that time may change, as the source of
-/// the engine declares them, and residuals that a user writes.
+/// The kinds that may depend on time: kinds whose fields hold a number or a point that time may change, as the source
+/// of the engine declares them, and residuals that a user writes.
 fn can_be_driven() -> BTreeSet<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/constraint");
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file());

@@ -3,8 +3,8 @@
 use super::random::Random;
 use qhat::{Dimension, Distance, Drag, Gravity, MouseSpring, Nail, Particle, PointForce, Spring, State, System};
 
-/// Up to four open chains with any masses, ends fixed, nailed or free, some rods springs, and every kind of force on any
-/// particle, fixed ones among them. `is_general` adds a triangle of rods far away, which no lane takes.
+/// Up to four open chains with any masses, ends fixed, nailed or free, some rods springs, and every kind of force on
+/// any particle, fixed ones among them. `is_general` adds a triangle of rods far away, which no lane takes.
 pub fn open_chains(seed: u64, heavy: f64, is_general: bool) -> (System, State) {
     let random = &mut Random::new(seed);
     let dimension = if random.below(2) == 0 { Dimension::Two } else { Dimension::Three };

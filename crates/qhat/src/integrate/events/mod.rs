@@ -4,8 +4,8 @@
 //! Between events the modes of all contacts stand, and a substep is a substep of the pair. The event functions of
 //! `contact/event_functions.rs` are all at least −1 while the modes are right. If one of them is below −1 at the end of
 //! a substep, the substep is tried again with a length at which none is below −1 and the first is back near zero
-//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn of
-//! slips.
+//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn
+//! of slips.
 
 mod locate;
 mod slip;

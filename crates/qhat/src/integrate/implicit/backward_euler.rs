@@ -5,8 +5,8 @@
 //! ```
 //!
 //! then q̇' is projected onto Ċ = 0. The Newton iteration of `newton.rs` solves the step with q* = q, q̇* = q̇ and
-//! h_e = h. Oscillations lose energy, the more the longer the step: at 1/60 s a whipping chain of 100 links loses 69 % of
-//! its largest kinetic energy in two seconds (`benches/results/workloads.csv`, chain100).
+//! h_e = h. Oscillations lose energy, the more the longer the step: at 1/60 s a whipping chain of 100 links loses 69 %
+//! of its largest kinetic energy in two seconds (`benches/results/workloads.csv`, chain100).
 //! Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.3; Tournier et al., Stable Constrained
 //! Dynamics (2015).
 

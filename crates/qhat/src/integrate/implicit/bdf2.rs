@@ -6,7 +6,8 @@
 //! ```
 //!
 //! q₋ and q̇₋ are the state before the last step of h₋; for equal steps q* = (4 q − q₋)/3 and h_e = 2h/3. Then q̇' is
-//! projected onto Ċ = 0. The first step is one of backward Euler, and so is a step on which Newton's method does not converge soon.
+//! projected onto Ċ = 0. The first step is one of backward Euler, and so is a step on which Newton's method does not
+//! converge soon.
 //! Source: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, III.5.
 
 use super::{Base, Formula, backward_euler};
