@@ -1,4 +1,4 @@
-//! A truss on two supports: tensions, what the ground bears, and the rod that breaks first.
+//! A truss on two supports: tensions, loads on the ground, and the rod that breaks first.
 //! `cargo run --example bridge`
 
 #![allow(clippy::disallowed_methods, reason = "the bits of these numbers need not be the same on every machine")]

@@ -25,7 +25,7 @@ pub(crate) fn tell(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let mut world = Simulation::new(system, state, settings)?;
 
     for frame in 0..120 {
-        // What a window would tell: the button goes down, the cursor moves, the button goes up.
+        // The events of a window: the button goes down, the cursor moves, the button goes up.
         let cursor = [0.01 * f64::from(frame), -1.8];
         match frame {
             10 => {

@@ -77,7 +77,7 @@ pub enum StepError {
         constraint: String,
         /// The particles that it names.
         particles: Vec<String>,
-        /// How far C is below zero \[m\].
+        /// The depth of C below zero \[m\].
         depth: f64,
     },
     /// No positions that satisfy the constraints were found nearby.

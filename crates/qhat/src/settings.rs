@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// How a state is carried over a step.
+/// The method that carries a state over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -152,7 +152,7 @@ impl Feedback {
     }
 }
 
-/// How to step.
+/// The settings of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -220,7 +220,7 @@ fn in_range(name: &'static str, value: f64, allowed: bool, range: &'static str) 
     if value.is_finite() && allowed { Ok(()) } else { Err(SettingsError::OutOfRange { name, value, range }) }
 }
 
-/// Why a setting was refused.
+/// The reason for which a setting is refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SettingsError {

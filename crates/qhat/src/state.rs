@@ -9,7 +9,7 @@ pub struct State {
     pub(crate) qd: Vec<f64>,
     pub(crate) t: f64,
     pub(crate) work: Work,
-    /// What every contact is doing, and what is broken.
+    /// The mode of every contact, and the broken constraints.
     pub(crate) modes: Modes,
     pub(crate) carry: Option<Carry>,
 }
@@ -35,7 +35,7 @@ impl Work {
     }
 }
 
-/// What an integrator carries from one frame to the next.
+/// The data that an integrator carries from one frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Carry {
     /// The last multipliers, the first guess of the next.
@@ -44,9 +44,9 @@ pub(crate) struct Carry {
     pub(crate) substep: f64,
     /// Whether A was found singular at this state.
     pub(crate) deficient: bool,
-    /// Where the last step began, for a method that looks back.
+    /// The start of the last step, for a method that looks back.
     pub(crate) previous: Option<Previous>,
-    /// Power of the drives where the last step ended [W], for a rule that looks back.
+    /// Power of the drives at the end of the last step [W], for a rule that looks back.
     pub(crate) drives: f64,
     /// Frames for which auto stays with a method that solves at the end of the step.
     pub(crate) resting: u32,

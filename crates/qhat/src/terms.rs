@@ -58,7 +58,7 @@ pub struct Terms {
     pub is_open: Vec<bool>,
     /// Rank of A; `None` where A is singular and too large for the rank to be counted.
     pub rank: Option<usize>,
-    /// What a user should know of this solve.
+    /// The warnings of this solve.
     pub warnings: Vec<Warning>,
 }
 

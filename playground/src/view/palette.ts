@@ -5,7 +5,7 @@ const VARIABLES = {
   background: '--canvas',
   grid: '--grid',
   ink: '--ink',
-  muted: '--outline',
+  outline: '--outline',
   guide: '--guide',
   accent: '--accent',
   particle: '--particle',

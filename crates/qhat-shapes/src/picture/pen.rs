@@ -22,7 +22,7 @@ pub(super) struct Stroke<'a> {
 /// An attribute and its value.
 pub(super) type Attribute<'a> = (&'a str, &'a str);
 
-/// How far the background reaches around letters \[px\]: a line behind a word would strike it through.
+/// The width of the background around letters \[px\]: a line behind a word would strike it through.
 const HALO: &str = "6";
 
 /// A document being written.

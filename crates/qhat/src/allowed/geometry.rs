@@ -3,7 +3,8 @@
 use super::ValueError;
 use thiserror::Error;
 
-/// Why points that a user gave do not make a [`Curve`](crate::Curve) or a cluster of [`rigid_rods`](crate::rigid_rods).
+/// The reason for which points of a user do not make a [`Curve`](crate::Curve) or a cluster of
+/// [`rigid_rods`](crate::rigid_rods).
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GeometryError {

@@ -6,7 +6,7 @@ pub use geometry::GeometryError;
 
 use thiserror::Error;
 
-/// Why a number that a user gave is refused. `what` names the number.
+/// The reason for which a number of a user is refused. `what` names the number.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ValueError {

@@ -1,9 +1,9 @@
-//! Why a constraint is refused.
+//! The reasons for which a constraint is refused.
 
 use crate::allowed::{GeometryError, ValueError};
 use thiserror::Error;
 
-/// Why a constraint is refused.
+/// The reason for which a constraint is refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ConstraintError {

@@ -27,7 +27,7 @@ pub(crate) trait Holds {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
-    /// How soft the rows are.
+    /// The softness of the rows.
     fn softness(&self) -> Softness {
         Softness::default()
     }

@@ -1,17 +1,17 @@
-//! Why an expression was refused: the place, the reason, and what to write instead.
+//! The error of an expression that is refused: the place, the reason and the remedy.
 
 use std::ops::Range;
 use thiserror::Error;
 
-/// Why an expression was refused.
+/// The error of an expression that is refused.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{message}")]
 pub struct ExpressionError {
     /// The part of the text \[bytes\], on borders of characters; empty at the end of the text.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// The mistake, as a sentence.
     pub message: String,
-    /// What to write instead, where that is known.
+    /// The remedy, if it is known.
     pub help: Option<String>,
 }
 
@@ -25,7 +25,7 @@ impl ExpressionError {
     }
 }
 
-/// Why a parameter of expressions is refused.
+/// The reason for which a parameter of expressions is refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ParameterError {

@@ -52,7 +52,7 @@ pub struct Jet {
     pub second: f64,
 }
 
-/// Where an expression is evaluated.
+/// The motion at which an expression is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct At<'a> {
     pub(super) q: &'a [f64],

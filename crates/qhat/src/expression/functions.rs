@@ -10,14 +10,14 @@ use std::ops::Range;
 /// A function, as messages show it.
 pub(super) struct Function {
     pub(super) name: &'static str,
-    /// How it is written.
+    /// A call of it, as a user writes one.
     pub(super) usage: &'static str,
     /// Fewest and most arguments.
     arguments: (usize, usize),
     does: Does,
 }
 
-/// What a function does with its arguments.
+/// The use that a function makes of its arguments.
 #[derive(Clone, Copy)]
 enum Does {
     /// Number → number.
@@ -58,7 +58,7 @@ pub(super) const FUNCTIONS: [Function; 19] = [
 ];
 
 impl Function {
-    /// How many arguments it takes, in words.
+    /// The number of arguments that it takes, in words.
     fn takes(&self) -> String {
         let (fewest, most) = self.arguments;
         let more = if most == ANY { " or more" } else { "" };

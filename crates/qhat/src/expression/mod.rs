@@ -154,7 +154,7 @@ impl Expression {
     /// expression. `by_velocity` may be empty if no velocity is used.
     ///
     /// # Panics
-    /// Where one of them is shorter than [`Expression::gradient_len`].
+    /// If an array of derivatives is shorter than [`Expression::gradient_len`].
     pub fn gradient(&self, q: &[f64], qd: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) -> f64 {
         self.run(|tape, room| {
             let value = tape.values(At { q, qd, t }, room);

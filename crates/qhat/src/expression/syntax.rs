@@ -57,7 +57,7 @@ pub(super) struct Tree {
 type Input<'i> = Stateful<&'i [Token], Tree>;
 type Parsed<O> = Result<O, ErrMode<Fault>>;
 
-/// Why parsing stopped.
+/// The reason for which parsing stopped.
 #[derive(Clone, Debug)]
 enum Fault {
     /// No operand begins where so many tokens remain.

@@ -26,7 +26,7 @@ pub(super) enum Instruction {
 
 use Instruction::*;
 
-/// Why an instruction was not appended.
+/// The reason for which an instruction was not appended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Refusal {
     /// The tape is full.
@@ -119,11 +119,11 @@ pub(super) struct Tape {
     pub(super) instructions: Vec<Instruction>,
     /// The particles that the expression depends on, in the order of first use.
     pub(super) particles: Vec<ParticleId>,
-    /// Where positions are read.
+    /// The slots that positions are written to.
     pub(super) positions: Vec<Input>,
-    /// Where velocities are read.
+    /// The slots that velocities are written to.
     pub(super) velocities: Vec<Input>,
-    /// Where t is read.
+    /// The slot that t is written to.
     pub(super) time: Option<Slot>,
 }
 

@@ -1,9 +1,9 @@
-//! Why a force is refused.
+//! The reasons for which a force is refused.
 
 use crate::allowed::ValueError;
 use thiserror::Error;
 
-/// Why a force is refused, by the builder or while a simulation runs.
+/// The reason for which a force is refused, by the builder or while a simulation runs.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ForceError {

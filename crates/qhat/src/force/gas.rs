@@ -83,7 +83,7 @@ impl Gas {
     /// `Ok` if the numbers and the facets are allowed.
     ///
     /// # Errors
-    /// In words: what is wrong with the numbers or the facets.
+    /// A number out of its range, or facets that do not close.
     pub fn check(&self) -> Result<(), ForceError> {
         positive("the pressure of a gas", self.pressure)?;
         positive("the exponent of a gas", self.exponent)?;

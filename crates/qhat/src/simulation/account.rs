@@ -13,7 +13,7 @@ use crate::system::System;
 /// to the largest kinetic energy, and for a structure at rest that must not be roundoff.
 const FLOOR: f64 = 1e-6;
 
-/// How well a run has kept its energy since its start.
+/// The energy that a run has had and lost since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct EnergyAccount {
     /// T + V less the work that came in, at the start [J].

@@ -5,7 +5,7 @@ use crate::force::ForceError;
 use crate::settings::SettingsError;
 use thiserror::Error;
 
-/// Why a system could not be built.
+/// The reason for which a system cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum BuildError {
@@ -14,7 +14,7 @@ pub enum BuildError {
     Particle {
         /// Its name.
         name: String,
-        /// Why it is refused.
+        /// The reason for which it is refused.
         #[source]
         reason: ParticleError,
     },
@@ -23,7 +23,7 @@ pub enum BuildError {
     Constraint {
         /// Its name.
         name: String,
-        /// Why it is refused.
+        /// The reason for which it is refused.
         #[source]
         reason: ConstraintError,
     },
@@ -34,7 +34,7 @@ pub enum BuildError {
         name: Option<String>,
         /// Its place in the order of addition, from 0.
         index: usize,
-        /// Why it is refused.
+        /// The reason for which it is refused.
         #[source]
         reason: ForceError,
     },
@@ -55,7 +55,7 @@ pub enum BuildError {
     Settings(#[from] SettingsError),
 }
 
-/// Why a particle is refused.
+/// The reason for which a particle is refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ParticleError {

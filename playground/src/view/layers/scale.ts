@@ -11,8 +11,8 @@ export function drawScale({ context, camera, palette }: Brush): void {
   const length = metres * camera.scale;
   const x = camera.inset.left + 20;
   const y = camera.height - camera.inset.bottom - 20;
-  context.strokeStyle = palette.muted;
-  context.fillStyle = palette.muted;
+  context.strokeStyle = palette.outline;
+  context.fillStyle = palette.outline;
   context.lineWidth = 1.5;
   context.beginPath();
   context.moveTo(x, y - 4);
