@@ -111,8 +111,9 @@ mod tests {
     use super::super::dop853::DOP853;
     use super::*;
     use crate::integrate::Workspace;
+    use crate::settings::Settings;
     use crate::space::Dimension;
-    use crate::system::Particle;
+    use crate::system::{Particle, System};
     use crate::{Distance, Gravity};
 
     /// The work ends on a rejected substep: the next solve must not use the factor of one of its stages.
