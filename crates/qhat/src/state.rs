@@ -1,6 +1,7 @@
 //! State: positions, velocities and time, and all that a restart needs to go on with the same bits.
 
 use crate::modes::{Mode, Modes};
+use std::sync::Arc;
 
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +13,8 @@ pub struct State {
     /// The mode of every contact, and the broken constraints.
     pub(crate) modes: Modes,
     pub(crate) carry: Option<Carry>,
+    /// `None` until the equation is first solved there.
+    pub(crate) rank: Option<Arc<Rank>>,
 }
 
 /// Energy that has crossed the borders of the system since t = 0 \[J\]; positive into it.
@@ -35,6 +38,19 @@ impl Work {
     }
 }
 
+/// The rows that follow from others, found where the equation was first solved with these rows active. It stays until
+/// a row that was left out is no longer satisfied by the others, or other rows become active.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rank {
+    /// For each row whether it was inactive; empty in a system without contacts.
+    pub(crate) inactive: Vec<bool>,
+    /// Rows that follow from others, ascending.
+    pub(crate) dependent: Vec<u32>,
+    /// The smallest pivot of the scaled A without these rows. Masses make it small, and so does a position near by
+    /// where the rank drops.
+    pub(crate) least: f64,
+}
+
 /// The data that an integrator carries from one frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Carry {
@@ -42,8 +58,8 @@ pub(crate) struct Carry {
     pub(crate) lambda: Vec<f64>,
     /// The substep to try next [s].
     pub(crate) substep: f64,
-    /// Whether A was found singular at this state.
-    pub(crate) deficient: bool,
+    /// Whether the rank of A drops near this state.
+    pub(crate) is_nearly_singular: bool,
     /// The start of the last step, for a method that looks back.
     pub(crate) previous: Option<Previous>,
     /// Power of the drives at the end of the last step [W], for a rule that looks back.
@@ -63,7 +79,7 @@ pub(crate) struct Previous {
 
 impl State {
     pub(crate) fn new(q: Vec<f64>, qd: Vec<f64>) -> Self {
-        State { q, qd, t: 0.0, work: Work::default(), modes: Modes::default(), carry: None }
+        State { q, qd, t: 0.0, work: Work::default(), modes: Modes::default(), carry: None, rank: None }
     }
 
     /// q \[m\], d·n numbers, particle after particle.
@@ -93,7 +109,7 @@ impl State {
     /// If the lengths differ from d·n.
     pub fn with_motion(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
-        let mut state = State { q: positions, qd: velocities, carry: None, ..self.clone() };
+        let mut state = State { q: positions, qd: velocities, carry: None, rank: None, ..self.clone() };
         // The next frame finds the contacts that are closed there. Broken constraints stay broken.
         state.modes.contacts.fill(Mode::Open);
         state

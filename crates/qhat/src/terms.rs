@@ -141,7 +141,7 @@ impl Workspace {
 
 /// The symbols of an equation that was solved at a state, with the tensions that belong to it.
 fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
-    let rank = equation.solver.rank(&system.matrix);
+    let rank = Some(equation.solver.rank(&system.matrix));
     let warnings = equation.warnings(system);
     let constraint_matrix =
         in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&equation.rows.J, &system.inverse_mass));

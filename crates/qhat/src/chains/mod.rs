@@ -27,6 +27,10 @@ use std::ops::Range;
 /// substep.
 const MAX_ITERATIONS: usize = 8;
 
+/// Part of its diagonal below which a pivot counts as zero, where no position near by is known at which rows depend on
+/// each other. Pivots of a chain with a free end are as small as the smallest ratio of inverse masses.
+pub(crate) const TINY_PIVOT: f64 = 1e-12;
+
 /// Outcome of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Projected {
@@ -44,6 +48,8 @@ pub(crate) struct Chains {
     forces: Forces,
     rows: Vec<Eliminated>,
     delta: Vec<F8>,
+    /// Part of its diagonal below which a pivot counts as zero.
+    pub(crate) tiny: f64,
 }
 
 impl Chains {
@@ -52,6 +58,7 @@ impl Chains {
             forces: Forces::new(system, plan),
             rows: vec![Eliminated::default(); plan.blocks()],
             delta: vec![F8::ZERO; plan.blocks() * system.dimension()],
+            tiny: TINY_PIVOT,
         }
     }
 
@@ -100,8 +107,10 @@ impl Chains {
         qdd: &mut [F8],
     ) -> Option<f64> {
         let (WQ, power) = self.forces.apply::<D>(system, plan, q, qd, t);
+        let tiny = self.tiny;
         let right = &|_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &WQ[at] };
-        let is_regular = Solve::<_, D> { plan, groups: &plan.groups, q, right, rows: &mut self.rows, out: qdd }.run();
+        let is_regular =
+            Solve::<_, D> { plan, groups: &plan.groups, q, right, rows: &mut self.rows, out: qdd, tiny }.run();
         is_regular.then_some(power)
     }
 
@@ -113,13 +122,14 @@ impl Chains {
         qd: &mut [F8],
         attainable: f64,
     ) -> Projected {
+        let tiny = self.tiny;
         let (groups, rows, out) = (&plan.groups[..], &mut self.rows[..], &mut self.delta[..]);
         for iteration in 0..=MAX_ITERATIONS {
             let off = vector_unit().dispatch(Measure::<D> { plan, q, qd }).relative_length;
             if off <= attainable {
                 let change = &*qd;
                 let right = &|_, at: Range<usize>| Velocity { qd: &change[at] };
-                let is_regular = Solve::<_, D> { plan, groups, q, right, rows, out }.run();
+                let is_regular = Solve::<_, D> { plan, groups, q, right, rows, out, tiny }.run();
                 qd.copy_from_slice(out);
                 return if is_regular { Projected::Met(iteration) } else { Projected::Singular };
             }
@@ -128,7 +138,7 @@ impl Chains {
             }
             let from = &*q;
             let right = &|stretch, at: Range<usize>| Position { stretch, q: &from[at] };
-            if !(Solve::<_, D> { plan, groups, q: from, right, rows, out }).run() {
+            if !(Solve::<_, D> { plan, groups, q: from, right, rows, out, tiny }).run() {
                 return Projected::Singular;
             }
             q.copy_from_slice(out);

@@ -30,9 +30,6 @@ use crate::linalg::eight::{F8, LANES, Wide, dot, load, minus};
 use crate::structure::chains::{Group, Stretch};
 use pulp::Simd;
 
-/// A pivot below this part of its diagonal counts as zero, as in `multiplier/factor.rs`: the rows depend on each other.
-const TINY_PIVOT: f64 = 1e-12;
-
 /// Rows after which the product p of all pivots starts again from one, before p can overflow or underflow. Numbers that
 /// have decayed below `NEGLIGIBLE` are set to zero at the same row.
 const RESTART: usize = 4;
@@ -61,7 +58,7 @@ pub(super) trait RightSide<const D: usize> {
 }
 
 /// Writes free + W Jᵀλ with A λ = b into `out`. All slices begin at the group's first block. Returns false if a pivot
-/// is tiny or NaN: the rows depend on each other, and `out` must not be used.
+/// is below the part `tiny` of its diagonal, or NaN: the rows nearly depend on each other, and `out` must not be used.
 #[inline(always)]
 pub(super) fn solve<S: Simd, const D: usize>(
     simd: S,
@@ -70,6 +67,7 @@ pub(super) fn solve<S: Simd, const D: usize>(
     right: &impl RightSide<D>,
     rows: &mut [Eliminated],
     out: &mut [F8],
+    tiny: f64,
 ) -> bool {
     if stretch.group.rows == 0 {
         for (c, free) in right.free(simd, 0).into_iter().enumerate() {
@@ -77,9 +75,9 @@ pub(super) fn solve<S: Simd, const D: usize>(
         }
         true
     } else if stretch.group.is_coupled {
-        sweep::<S, D, true>(simd, stretch, q, right, rows, out)
+        sweep::<S, D, true>(simd, stretch, q, right, rows, out, tiny)
     } else {
-        sweep::<S, D, false>(simd, stretch, q, right, rows, out)
+        sweep::<S, D, false>(simd, stretch, q, right, rows, out, tiny)
     }
 }
 
@@ -91,6 +89,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
     right: &impl RightSide<D>,
     rows: &mut [Eliminated],
     out: &mut [F8],
+    tiny: f64,
 ) -> bool {
     let last = group.rows;
     // Slices of known length, so that the compiler drops the bounds checks below.
@@ -125,7 +124,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
         let diagonal = (w_before + w_here) * dot(d, d) + at(&padding[i]);
         let e = -(w_before * dot(d_before, d));
         let p_here = diagonal * p - (e * e) * p_before;
-        regular = regular.where_above(p_here, TINY_PIVOT * (diagonal * p), zero);
+        regular = regular.where_above(p_here, tiny * (diagonal * p), zero);
         let ratio = e * inverse;
         y = right.row(simd, i, d) - ratio * y;
         if COUPLED {
@@ -158,7 +157,7 @@ fn sweep<S: Simd, const D: usize, const COUPLED: bool>(
     let mut is_regular = true;
     if COUPLED {
         let tails = Tails { y: y.stored(), inverse: inverse.stored(), f: f.stored() };
-        let (separators, is_positive) = separators(group, &tails, tail_square.stored(), tail_y.stored());
+        let (separators, is_positive) = separators(group, &tails, tail_square.stored(), tail_y.stored(), tiny);
         is_regular = is_positive;
         lambda = at(&separators);
         z = (follows * at(&separators.shifted_up())).flushed();
@@ -212,7 +211,7 @@ struct Tails {
 
 /// The multipliers of the last row of every lane, and whether no pivot is tiny.
 #[inline(always)]
-fn separators(group: &Group, last: &Tails, tail_square: F8, tail_y: F8) -> (F8, bool) {
+fn separators(group: &Group, last: &Tails, tail_square: F8, tail_y: F8, tiny: f64) -> (F8, bool) {
     let follows = |k: usize| if k < LANES { group.follows.0[k] } else { 0.0 };
     let mut is_regular = true;
     let (mut y, mut inverse, mut f) = ([0.0; LANES], [0.0; LANES], [0.0; LANES + 1]);
@@ -228,7 +227,7 @@ fn separators(group: &Group, last: &Tails, tail_square: F8, tail_y: F8) -> (F8, 
             y[k] -= ratio * y[k - 1];
         }
         inverse[k] = 1.0 / pivot;
-        is_regular &= pivot > TINY_PIVOT * diagonal;
+        is_regular &= pivot > tiny * diagonal;
     }
     let mut lambda = F8::ZERO;
     let mut after = 0.0;

@@ -23,6 +23,8 @@ pub(super) struct Solve<'a, B, const D: usize> {
     pub(super) rows: &'a mut [Eliminated],
     /// Solves these groups one after the other.
     pub(super) out: &'a mut [F8],
+    /// Part of its diagonal below which a pivot is tiny.
+    pub(super) tiny: f64,
 }
 
 impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R + Sync, const D: usize> Solve<'a, B, D> {
@@ -31,14 +33,14 @@ impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R + Sync, const D:
         if self.groups.len() < 2 || self.rows.len() < 2 * SHARE {
             return vector_unit().dispatch(self);
         }
-        let Solve { plan, groups, q, right, rows, out } = self;
+        let Solve { plan, groups, q, right, rows, out, tiny } = self;
         let (left, rest) = groups.split_at(groups.len() / 2);
         let blocks = rest[0].first - left[0].first;
         let (left_rows, rest_rows) = rows.split_at_mut(blocks);
         let (left_out, rest_out) = out.split_at_mut(blocks * D);
         let (one, other) = threads::both(
-            || Solve { plan, groups: left, q, right, rows: left_rows, out: left_out }.run(),
-            || Solve { plan, groups: rest, q, right, rows: rest_rows, out: rest_out }.run(),
+            || Solve { plan, groups: left, q, right, rows: left_rows, out: left_out, tiny }.run(),
+            || Solve { plan, groups: rest, q, right, rows: rest_rows, out: rest_out, tiny }.run(),
         );
         one && other
     }
@@ -55,7 +57,7 @@ impl<'a, R: RightSide<D>, B: Fn(Stretch<'a>, Range<usize>) -> R, const D: usize>
             let (blocks, at) = (stretch.group.rows + 1, stretch.group.coordinates::<D>());
             let right = (self.right)(stretch, at.clone());
             // Every group overwrites the same rows, which therefore stay in the cache.
-            is_regular &= solve(simd, stretch, &self.q[at], &right, self.rows, out);
+            is_regular &= solve(simd, stretch, &self.q[at], &right, self.rows, out, self.tiny);
             out = &mut out[blocks * D..];
         }
         is_regular

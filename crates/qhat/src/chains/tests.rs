@@ -123,7 +123,7 @@ fn every_vector_unit_gives_the_same_bits() {
         for (unit, out) in [(Arch::Scalar, &mut plain), (Arch::new(), &mut wide)] {
             let right = &|_, at: Range<usize>| Acceleration { qd: &qd[at.clone()], WQ: &q[at] };
             let (groups, rows) = (&plan.groups[..], &mut lanes.rows[..]);
-            assert!(unit.dispatch(Solve::<_, 3> { plan, groups, q: &q, right, rows, out }));
+            assert!(unit.dispatch(Solve::<_, 3> { plan, groups, q: &q, right, rows, out, tiny: super::TINY_PIVOT }));
         }
         let bits = |numbers: &[F8]| numbers.iter().flat_map(|x| x.0.map(f64::to_bits)).collect::<Vec<u64>>();
         assert_eq!(bits(&plain), bits(&wide), "{} rods", system.row_count());

@@ -18,7 +18,7 @@
 use super::SAME_WAY;
 use super::cones::propose;
 use crate::modes::{Mode, Modes, Slip};
-use crate::multiplier::{Equation, SolveFor};
+use crate::multiplier::Equation;
 use crate::point::largest;
 use crate::structure::Contact;
 use crate::system::System;
@@ -123,7 +123,7 @@ fn pivot<const D: usize>(
 pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
     equation.factor::<D>(system, 0.0);
-    equation.solve_multipliers::<D>(system, SolveFor::Force);
+    equation.solve_multipliers::<D>(system);
     equation.write_W_JT_lambda_F::<D>(system);
 }
 

@@ -21,7 +21,7 @@ use super::Touching;
 use super::complementarity::{size, w};
 use super::lemke::lemke;
 use crate::modes::{Mode, Modes};
-use crate::multiplier::{Equation, SolveFor};
+use crate::multiplier::Equation;
 use crate::system::System;
 
 /// cos 45°.
@@ -150,7 +150,7 @@ fn edges(tangents: usize, [a, b]: [f64; 2]) -> Vec<[f64; 2]> {
 
 /// p: w of rows while every touching contact is open.
 fn separation<const D: usize>(equation: &mut Equation, system: &System, rows: &[usize]) -> Vec<f64> {
-    equation.solve_multipliers::<D>(system, SolveFor::Force);
+    equation.solve_multipliers::<D>(system);
     equation.write_W_JT_lambda_F::<D>(system);
     rows.iter().map(|&row| w::<D>(equation, row)).collect()
 }
@@ -162,7 +162,7 @@ fn compliance<const D: usize>(equation: &mut Equation, system: &System, row: usi
     equation.write_W_JT_lambda::<D>(system);
     let target: Vec<f64> = (0..system.row_count()).map(|row| -equation.J_W_JT_lambda::<D>(row)).collect();
     let Equation { solver, lambda, .. } = &mut *equation;
-    solver.solve(&system.matrix, &target, SolveFor::Force, lambda);
+    solver.solve(&system.matrix, &target, lambda);
     lambda[row] += 1.0;
     equation.write_W_JT_lambda::<D>(system);
     rows.iter().map(|&row| equation.J_W_JT_lambda::<D>(row)).collect()

@@ -16,7 +16,7 @@ use super::complementarity::solve;
 use super::cones::propose;
 use super::{NoConsistentModes, Touching, settle};
 use crate::modes::Modes;
-use crate::multiplier::{Equation, SolveFor};
+use crate::multiplier::Equation;
 use crate::point::{block, dot};
 use crate::space::ParticleId;
 use crate::system::System;
@@ -109,7 +109,7 @@ pub(crate) fn hold<const D: usize>(equation: &mut Equation, system: &System, qd:
     let before = kinetic::<D>(system, qd);
     ask_to_stop(equation);
     let Equation { solver, b, lambda, .. } = &mut *equation;
-    solver.solve(&system.matrix, &b.sum, SolveFor::Force, lambda);
+    solver.solve(&system.matrix, &b.sum, lambda);
     equation.write_W_JT_lambda::<D>(system);
     qd.iter_mut().zip(&equation.W_JT_lambda).for_each(|(v, change)| *v += change);
     before - kinetic::<D>(system, qd)

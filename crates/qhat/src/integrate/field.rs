@@ -8,7 +8,6 @@ use crate::chains::{Chains, Projected};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
-use crate::multiplier::SolveFor;
 use crate::point::{Motion, largest};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
@@ -95,7 +94,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         let motion = Motion::<D> { q: flat_q, qd: flat_qd, t };
-        equation.solve(self.system, motion, &self.feedback, self.is_factored, SolveFor::Force);
+        equation.solve(self.system, motion, &self.feedback, self.is_factored);
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);
@@ -115,13 +114,15 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         unpack(qd, flat_qd);
         for iteration in 0..=MAX_ITERATIONS {
             equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
-            let off = worst_row(system, &equation.rows.C).1;
+            let (row, off) = worst_row(system, &equation.rows.C);
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
-                equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
-                equation.solver.solve(matrix, &equation.b.sum, SolveFor::Correction, delta);
-                equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_qd);
-                equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
+                if !equation.is_nearly_singular() {
+                    equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
+                    equation.solver.solve(matrix, &equation.b.sum, delta);
+                    equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_qd);
+                    equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
+                }
                 pack(flat_q, q);
                 pack(flat_qd, qd);
                 self.is_factored = true;
@@ -130,7 +131,12 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             if off.is_infinite() {
                 break;
             }
-            equation.solver.solve(matrix, &equation.rows.C, SolveFor::Correction, delta);
+            if iteration == MAX_ITERATIONS && equation.follows(row) {
+                // The rows that were kept no longer say what this one says.
+                equation.rank = None;
+                equation.factor::<D>(system, 0.0);
+            }
+            equation.solver.solve(matrix, &equation.rows.C, delta);
             equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
         }
         Projected::NotMet

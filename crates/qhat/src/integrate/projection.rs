@@ -11,7 +11,7 @@
 use super::Workspace;
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
-use crate::multiplier::{Equation, SolveFor};
+use crate::multiplier::Equation;
 use crate::point::{Motion, block, dot, largest};
 use crate::report::Projection;
 use crate::settings::Settings;
@@ -81,7 +81,7 @@ impl<const D: usize> Projector<'_, D> {
                 return Ok((before, iteration));
             }
             self.equation.factor::<D>(system, 0.0);
-            self.equation.solver.solve(&system.matrix, &self.equation.rows.C, SolveFor::Correction, &mut delta);
+            self.equation.solver.solve(&system.matrix, &self.equation.rows.C, &mut delta);
             let J = self.equation.rows.J.clone();
             start.copy_from_slice(self.q);
             let mut fraction = 1.0;
@@ -117,7 +117,7 @@ impl<const D: usize> Projector<'_, D> {
         if rate * system.extent > CONSISTENT_RATE * fastest {
             equation.factor::<D>(system, 0.0);
             let mut nu = vec![0.0; equation.rows.Cd.len()];
-            equation.solver.solve(&system.matrix, &equation.rows.Cd, SolveFor::Force, &mut nu);
+            equation.solver.solve(&system.matrix, &equation.rows.Cd, &mut nu);
             equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, qd); // q̇ − W Jᵀ A⁻¹ Ċ
         }
     }

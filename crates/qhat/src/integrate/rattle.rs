@@ -25,7 +25,6 @@ use crate::constraint::Jacobian;
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::error::StepError;
-use crate::multiplier::SolveFor;
 use crate::point::{Motion, largest};
 use crate::report::{StepReport, Warning};
 use crate::settings::Integrator;
@@ -198,7 +197,7 @@ impl<const D: usize> RattleStepper<'_, '_, D> {
                 return None;
             }
             last = off;
-            equation.solver.solve(matrix, &equation.rows.C, SolveFor::Correction, &mut scratch.delta);
+            equation.solver.solve(matrix, &equation.rows.C, &mut scratch.delta);
             for (mu, delta) in scratch.mu.iter_mut().zip(&scratch.delta) {
                 *mu -= delta;
             }
@@ -227,7 +226,7 @@ impl<const D: usize> RattleStepper<'_, '_, D> {
         // ν in one solve, with the factor of A(q'), and q̇' = … + δq̇.
         equation.factor::<D>(system, 0.0);
         equation.rows.rates::<D>(qd, &mut scratch.delta);
-        equation.solver.solve(matrix, &scratch.delta, SolveFor::Force, &mut scratch.nu);
+        equation.solver.solve(matrix, &scratch.delta, &mut scratch.nu);
         for nu in &mut scratch.nu {
             *nu = -*nu;
         }

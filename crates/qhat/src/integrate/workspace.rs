@@ -4,7 +4,7 @@ use super::runge_kutta::Stages;
 use super::watch::TensionWatch;
 use super::{implicit, rattle};
 use crate::chains::Chains;
-use crate::multiplier::{Equation, SolveFor};
+use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::settings::Feedback;
 use crate::space::in_dimension;
@@ -56,10 +56,7 @@ impl Workspace {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         self.set_modes(system, state);
         let is_factored = feedback.diagonal_drag == 0.0 && self.is_factored_at(state);
-        if !is_factored {
-            self.equation.solver.memory.ask_again();
-        }
-        self.equation.solve(system, motion, feedback, is_factored, SolveFor::LeastNorm);
+        self.equation.solve(system, motion, feedback, is_factored);
         self.equation.solver.memory.forget();
         if feedback.diagonal_drag == 0.0 {
             self.note_factored(state);
@@ -78,8 +75,13 @@ impl Workspace {
         })
     }
 
-    /// Takes the active rows from the modes of a state.
+    /// Takes the active rows from the modes of a state, and the rows that follow from others. A factor of A without
+    /// other rows is forgotten.
     pub(crate) fn set_modes(&mut self, system: &System, state: &State) {
+        if state.rank.is_none() || state.rank != self.equation.rank {
+            self.equation.rank.clone_from(&state.rank);
+            self.equation.solver.memory.forget();
+        }
         if !system.contacts.is_empty() {
             self.equation.set_modes(system, &state.modes);
         }

@@ -6,6 +6,7 @@
 //! ```
 
 use super::Pattern;
+use super::small_pivots::SmallPivots;
 
 /// L below the diagonal and D on it, row after row.
 #[derive(Clone, Debug)]
@@ -19,14 +20,14 @@ impl DenseLdl {
         DenseLdl { order, factor: vec![0.0; order * order] }
     }
 
-    pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
+    pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], small: &mut SmallPivots<'_>) -> f64 {
         let n = self.order;
         self.factor.fill(0.0);
         for i in 0..n {
             for slot in pattern.start[i]..pattern.start[i + 1] {
                 self.factor[i * n + pattern.column[slot]] = values[slot];
             }
-            self.factor[i * n + i] += shift;
+            self.factor[i * n + i] += small.shift;
         }
         let mut smallest = f64::INFINITY;
         for i in 0..n {
@@ -47,10 +48,14 @@ impl DenseLdl {
                 pivot -= row[j] * y;
             }
             row[i] = pivot;
-            if pivot.is_nan() || pivot <= 0.0 {
-                return pivot;
+            if pivot.is_nan() || pivot <= small.below {
+                match small.pivot_instead(i, pivot) {
+                    Some(instead) => row[i] = instead,
+                    None => return pivot,
+                }
+            } else {
+                smallest = smallest.min(pivot);
             }
-            smallest = smallest.min(pivot);
         }
         smallest
     }

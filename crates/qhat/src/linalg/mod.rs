@@ -18,8 +18,8 @@ mod leaf_to_root;
 mod multifrontal;
 mod ordering;
 mod plan;
-mod rank;
 mod simplicial;
+mod small_pivots;
 mod symmetric;
 #[cfg(test)]
 mod tests;
@@ -30,7 +30,7 @@ pub(crate) use incidence::Incidence;
 pub(crate) use leaf_to_root::{ForestEdge, LeafToRoot, NONE, Saddle};
 pub(crate) use plan::EliminationPlan;
 pub use plan::{Component, ComponentKind, FactorMethod};
-pub(crate) use rank::rank_of;
+pub(crate) use small_pivots::SmallPivots;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use symmetric::{Lower, Pattern};
 
@@ -75,9 +75,15 @@ impl Factor {
     /// Factors A + shift·I and returns the smallest pivot. If this pivot is not positive, no factor was made. Unknowns
     /// of hubs are not shifted. Their pivots must be negative, and a pivot of theirs is returned only if it is not.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64], shift: f64) -> f64 {
+        let met = &mut Vec::new();
+        self.factor_with(pattern, values, &mut SmallPivots { shift, below: 0.0, instead: None, met })
+    }
+
+    /// The same with an answer to small pivots. Returns the smallest of the other pivots, infinity if there is none.
+    pub(crate) fn factor_with(&mut self, pattern: &Pattern, values: &[f64], small: &mut SmallPivots<'_>) -> f64 {
         match self {
-            Factor::Dense(ldl) => ldl.factor(pattern, values, shift),
-            Factor::Sparse(ldl) => ldl.factor(values, shift),
+            Factor::Dense(ldl) => ldl.factor(pattern, values, small),
+            Factor::Sparse(ldl) => ldl.factor(values, small),
         }
     }
 
@@ -146,14 +152,14 @@ impl SparseLdl {
         }
     }
 
-    fn factor(&mut self, values: &[f64], shift: f64) -> f64 {
+    fn factor(&mut self, values: &[f64], small: &mut SmallPivots<'_>) -> f64 {
         let symbolic = &*self.symbolic;
         let negative = &symbolic.negative;
-        let smallest = self.simplicial.factor(&symbolic.simplicial, &symbolic.a, negative, values, shift);
+        let smallest = self.simplicial.factor(&symbolic.simplicial, &symbolic.a, negative, values, small);
         if smallest.is_nan() || smallest <= 0.0 {
             return smallest;
         }
-        let other = self.fronts.factor(&symbolic.fronts, negative, values, shift);
+        let other = self.fronts.factor(&symbolic.fronts, negative, values, small);
         if other.is_nan() { other } else { smallest.min(other) }
     }
 

@@ -6,6 +6,7 @@
 use super::eight::{Eight, across};
 use super::fronts::{Front, FrontPlan};
 use super::kernel::{COLUMNS, H, columns, minus_scaled, outer, rows, scaled, subtract};
+use super::small_pivots::SmallPivots;
 use pulp::{Arch, NullaryFnOnce};
 
 /// L D Lᵀ of some rows.
@@ -46,13 +47,26 @@ impl Multifrontal {
         }
     }
 
-    pub(crate) fn factor(&mut self, plan: &FrontPlan, negative: &[bool], values: &[f64], shift: f64) -> f64 {
-        self.arch.dispatch(Factorization { ldl: self, plan, negative: &negative[plan.range.clone()], values, shift })
+    pub(crate) fn factor(
+        &mut self,
+        plan: &FrontPlan,
+        negative: &[bool],
+        values: &[f64],
+        small: &mut SmallPivots<'_>,
+    ) -> f64 {
+        self.arch.dispatch(Factorization { ldl: self, plan, negative: &negative[plan.range.clone()], values, small })
     }
 
     /// Factors one front: from the entries of A and the updates of its children to its columns of L and its own update.
     #[inline(always)]
-    fn eliminate(&mut self, plan: &FrontPlan, front: &Front, negative: &[bool], values: &[f64], shift: f64) -> f64 {
+    fn eliminate(
+        &mut self,
+        plan: &FrontPlan,
+        front: &Front,
+        negative: &[bool],
+        values: &[f64],
+        small: &mut SmallPivots<'_>,
+    ) -> f64 {
         let negative = &negative[front.first..][..front.columns];
         let l = &mut self.l[front.l.clone()];
         let [even, odd] = &mut self.stacks;
@@ -69,7 +83,7 @@ impl Multifrontal {
         }
         for c in 0..front.columns {
             if !negative[c] {
-                numbers[front.row_in_l(c) + c * H] += shift;
+                numbers[front.row_in_l(c) + c * H] += small.shift;
             }
         }
         for &child in &plan.children[front.children.clone()] {
@@ -79,7 +93,8 @@ impl Multifrontal {
         }
         let d = &mut self.d[front.first..][..front.columns];
         let inverse_d = &mut self.inverse_d[front.first..][..front.columns];
-        let smallest = factor_columns(l, negative, d, inverse_d, &mut self.scratch.w);
+        let first = plan.range.start + front.first;
+        let smallest = factor_columns(l, negative, d, inverse_d, &mut self.scratch.w, first, small);
         if smallest > 0.0 {
             subtract_update(front, l, d, update, &mut self.scratch.w);
         }
@@ -94,22 +109,22 @@ impl Multifrontal {
 
 /// The factorization as a task for the widest registers of the machine. It is a type and not a closure, so that the
 /// whole task is compiled for these registers.
-struct Factorization<'a> {
+struct Factorization<'a, 'b> {
     ldl: &'a mut Multifrontal,
     plan: &'a FrontPlan,
     negative: &'a [bool],
     values: &'a [f64],
-    shift: f64,
+    small: &'a mut SmallPivots<'b>,
 }
 
-impl NullaryFnOnce for Factorization<'_> {
+impl NullaryFnOnce for Factorization<'_, '_> {
     type Output = f64;
 
     #[inline(always)]
     fn call(self) -> f64 {
         let mut smallest = f64::INFINITY;
         for front in &self.plan.fronts {
-            let pivot = self.ldl.eliminate(self.plan, front, self.negative, self.values, self.shift);
+            let pivot = self.ldl.eliminate(self.plan, front, self.negative, self.values, self.small);
             if pivot.is_nan() || pivot <= 0.0 {
                 return pivot;
             }
@@ -179,7 +194,15 @@ fn take(
 /// Eliminates eight columns at a time: first the columns before are subtracted from the eight, then the eight are
 /// eliminated in all rows.
 #[inline(always)]
-fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: &mut [f64], w: &mut [Eight]) -> f64 {
+fn factor_columns(
+    l: &mut [Eight],
+    negative: &[bool],
+    d: &mut [f64],
+    inverse_d: &mut [f64],
+    w: &mut [Eight],
+    first: usize,
+    small: &mut SmallPivots<'_>,
+) -> f64 {
     let k = d.len();
     let mut smallest = f64::INFINITY;
     for begin in (0..k).step_by(H) {
@@ -188,17 +211,17 @@ fn factor_columns(l: &mut [Eight], negative: &[bool], d: &mut [f64], inverse_d: 
         let (before, d) = d.split_at_mut(begin);
         let inverse_d = &mut inverse_d[begin..];
         let negative = &negative[begin..];
-        let w = &mut w[..begin];
+        let (w, first) = (&mut w[..begin], first + begin);
         scale(&l[..begin], before, w);
         let pivot = match k - begin {
-            1 => factor_tiles::<1>(k, l, negative, d, inverse_d, w),
-            2 => factor_tiles::<2>(k, l, negative, d, inverse_d, w),
-            3 => factor_tiles::<3>(k, l, negative, d, inverse_d, w),
-            4 => factor_tiles::<4>(k, l, negative, d, inverse_d, w),
-            5 => factor_tiles::<5>(k, l, negative, d, inverse_d, w),
-            6 => factor_tiles::<6>(k, l, negative, d, inverse_d, w),
-            7 => factor_tiles::<7>(k, l, negative, d, inverse_d, w),
-            _ => factor_tiles::<8>(k, l, negative, d, inverse_d, w),
+            1 => factor_tiles::<1>(k, l, negative, d, inverse_d, w, first, small),
+            2 => factor_tiles::<2>(k, l, negative, d, inverse_d, w, first, small),
+            3 => factor_tiles::<3>(k, l, negative, d, inverse_d, w, first, small),
+            4 => factor_tiles::<4>(k, l, negative, d, inverse_d, w, first, small),
+            5 => factor_tiles::<5>(k, l, negative, d, inverse_d, w, first, small),
+            6 => factor_tiles::<6>(k, l, negative, d, inverse_d, w, first, small),
+            7 => factor_tiles::<7>(k, l, negative, d, inverse_d, w, first, small),
+            _ => factor_tiles::<8>(k, l, negative, d, inverse_d, w, first, small),
         };
         if pivot.is_nan() || pivot <= 0.0 {
             return pivot;
@@ -217,6 +240,8 @@ fn factor_tiles<const N: usize>(
     d: &mut [f64],
     inverse_d: &mut [f64],
     w: &[Eight],
+    first: usize,
+    small: &mut SmallPivots<'_>,
 ) -> f64 {
     let mut smallest = f64::INFINITY;
     let (mut y, mut inverse) = ([[0.0; H]; N], [0.0; N]);
@@ -240,13 +265,19 @@ fn factor_tiles<const N: usize>(
             for c in 0..N {
                 d[c] = own[c][c];
                 let pivot = if negative[c] { -d[c] } else { d[c] };
-                if pivot.is_nan() || pivot <= 0.0 {
-                    return pivot;
+                if pivot.is_nan() || pivot <= small.below {
+                    match small.pivot_instead(first + c, pivot) {
+                        // A column of zeros times an infinite d would not be a number.
+                        Some(instead) if instead.is_infinite() => (d[c], inverse[c]) = (0.0, 0.0),
+                        Some(instead) => (d[c], inverse[c]) = (instead, 1.0 / instead),
+                        None => return pivot,
+                    }
+                } else {
+                    if !negative[c] {
+                        smallest = smallest.min(pivot);
+                    }
+                    inverse[c] = 1.0 / d[c];
                 }
-                if !negative[c] {
-                    smallest = smallest.min(pivot);
-                }
-                inverse[c] = 1.0 / d[c];
                 inverse_d[c] = inverse[c];
                 y[c] = own[c];
                 own[c] = scaled(&y[c], inverse[c]);

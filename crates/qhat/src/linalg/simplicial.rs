@@ -6,6 +6,7 @@
 
 use super::Lower;
 use super::elimination::NONE;
+use super::small_pivots::SmallPivots;
 use std::ops::Range;
 
 /// The positions of the entries of L. Columns of L are stored one after the other, each with its rows ascending.
@@ -95,7 +96,7 @@ impl Simplicial {
         a: &Lower,
         negative: &[bool],
         values: &[f64],
-        shift: f64,
+        small: &mut SmallPivots<'_>,
     ) -> f64 {
         let (n, first) = (plan.rows.len(), plan.rows.start);
         let (l, d, y) = (&mut self.l[..], &mut self.d[..n], &mut self.y[..n]);
@@ -105,7 +106,7 @@ impl Simplicial {
                 y[column as usize - first] += values[slot as usize];
             }
             let negative = negative[first + k];
-            let mut pivot = if negative { y[k] } else { y[k] + shift };
+            let mut pivot = if negative { y[k] } else { y[k] + small.shift };
             y[k] = 0.0;
             for &(i, place) in &plan.row_entry[plan.row_start[k] as usize..plan.row_start[k + 1] as usize] {
                 let (i, place) = (i as usize, place as usize);
@@ -120,10 +121,12 @@ impl Simplicial {
             }
             d[k] = pivot;
             let pivot = if negative { -pivot } else { pivot };
-            if pivot.is_nan() || pivot <= 0.0 {
-                return pivot;
-            }
-            if !negative {
+            if pivot.is_nan() || pivot <= small.below {
+                match small.pivot_instead(first + k, pivot) {
+                    Some(instead) => d[k] = instead,
+                    None => return pivot,
+                }
+            } else if !negative {
                 smallest = smallest.min(pivot);
             }
         }

@@ -7,10 +7,22 @@
 //! The friction F of sliding contacts follows λ and is added to both: −J W F to the right-hand side, W F to q̈
 //! (`friction.rs`). A soft row is inert: its force is part of Q, and λ only reports it.
 
-use super::{Equation, SolveFor, reaction};
+use super::{Equation, reaction};
 use crate::point::Motion;
 use crate::settings::Feedback;
+use crate::state::Rank;
 use crate::system::System;
+use std::sync::Arc;
+
+/// Smallest pivot with which all rows are independent without a question.
+const INDEPENDENT: f64 = 1e-2;
+
+/// Part of the smallest pivot where the rank was found below which the question is asked again: the rank may drop here.
+const DOUBTFUL: f64 = 1e-4;
+
+/// Part of the smallest pivot where the rank was found below which a position is near one where the rank drops: the
+/// sine of the least independent row is then a hundredth of what it was.
+pub(crate) const NEAR: f64 = 1e-4;
 
 impl Equation {
     /// Solves the equation at one motion, everything from Q to q̈. `is_factored`: the factor of A + ε I at this q and
@@ -21,7 +33,6 @@ impl Equation {
         motion: Motion<'_, D>,
         feedback: &Feedback,
         is_factored: bool,
-        wanted: SolveFor,
     ) {
         let (W, s) = (&system.inverse_mass, 1.0 - feedback.elasticity);
         self.apply_forces(system, motion); // Q, W Q
@@ -30,7 +41,7 @@ impl Equation {
         if !is_factored {
             self.factor::<D>(system, feedback.diagonal_drag); // A + ε I
         }
-        self.solve_multipliers::<D>(system, wanted); // (A + ε I) λ = b, and F
+        self.solve_multipliers::<D>(system); // (A + ε I) λ = b, and F
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat); // Q̂ = s Jᵀ λ
         self.report_soft_rows(system); // λ of soft rows
         reaction::accelerations::<D>(W, &self.Q, &self.Q_hat, &mut self.qdd); // q̈ = W (Q + Q̂)
@@ -49,20 +60,67 @@ impl Equation {
         }
     }
 
-    /// A = J W Jᵀ and the factor of A + ε I, over the active rows.
+    /// A = J W Jᵀ and the factor of A + ε I, over active rows that are independent of each other. Whether rows follow
+    /// from others is asked where the equation is first solved, and at positions where a pivot is much smaller than
+    /// there.
     pub(crate) fn factor<const D: usize>(&mut self, system: &System, epsilon: f64) {
-        system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-        self.solver.factor(&system.matrix, &self.A, epsilon, &self.inactive);
+        let (matrix, W) = (&system.matrix, &system.inverse_mass);
+        matrix.assemble::<D>(&self.rows.J, W, &mut self.A);
+        if epsilon > 0.0 {
+            // A + ε I is positive definite; only roundoff can spoil it.
+            let smallest = self.solver.factor(matrix, &self.A, epsilon, &self.inactive, &[]);
+            if smallest.is_nan() || smallest <= 0.0 {
+                self.solver.factor_perturbed(matrix, &self.A, epsilon, &self.inactive, &[]);
+            }
+            return;
+        }
+        let rank = self.rank.take().filter(|rank| rank.inactive == self.inactive);
+        let known: &[u32] = rank.as_ref().map_or(&[], |rank| &rank.dependent);
+        let smallest = self.solver.factor(matrix, &self.A, 0.0, &self.inactive, known);
+        let expected = rank.as_ref().map_or(INDEPENDENT, |rank| DOUBTFUL * rank.least);
+        // A pivot that is not a number is not above either.
+        let is_sure = smallest > expected;
+        if !is_sure {
+            let dependent = self.dependent_rows::<D>(system);
+            matrix.assemble::<D>(&self.rows.J, W, &mut self.A);
+            self.solver.factor_perturbed(matrix, &self.A, 0.0, &self.inactive, &dependent);
+        }
+        self.rank = rank.or_else(|| {
+            let (inactive, dependent) = (self.inactive.clone(), self.solver.dependent().to_vec());
+            Some(Arc::new(Rank { inactive, dependent, least: self.solver.smallest_pivot().min(1.0) }))
+        });
+    }
+
+    /// The rows that follow from others, for the next frame. Its smallest pivot is the largest that any position had: a
+    /// motion may begin near a position where the rank drops.
+    pub(crate) fn rank_to_keep(&self) -> Option<Arc<Rank>> {
+        let (rank, smallest) = (self.rank.as_ref()?, self.solver.smallest_pivot().min(1.0));
+        if smallest <= rank.least || self.solver.dependent() != rank.dependent {
+            return Some(rank.clone());
+        }
+        Some(Arc::new(Rank { least: smallest, ..Rank::clone(rank) }))
+    }
+
+    /// Whether a row is left out because it follows from others at any position.
+    pub(crate) fn follows(&self, row: usize) -> bool {
+        self.rank.as_ref().is_some_and(|rank| rank.dependent.binary_search(&(row as u32)).is_ok())
+    }
+
+    /// Whether the rank of A drops near the position of the factor at hand.
+    pub(crate) fn is_nearly_singular(&self) -> bool {
+        self.rank.as_ref().is_some_and(|rank| {
+            self.solver.smallest_pivot() <= NEAR * rank.least || self.solver.dependent() != rank.dependent
+        })
     }
 
     /// λ for the right-hand side at hand, and F of the sliding contacts; λ is not a number where friction has no
     /// answer.
-    pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System, wanted: SolveFor) {
+    pub(crate) fn solve_multipliers<const D: usize>(&mut self, system: &System) {
         let Equation { sliding, friction, rows, b, lambda, solver, .. } = self;
-        solver.solve(&system.matrix, &b.sum, wanted, lambda);
+        solver.solve(&system.matrix, &b.sum, lambda);
         if !sliding.is_empty() {
             friction.solve::<D>(sliding, rows, &system.inverse_mass, lambda, |target, answer| {
-                solver.solve(&system.matrix, target, wanted, answer);
+                solver.solve(&system.matrix, target, answer);
             });
         }
     }

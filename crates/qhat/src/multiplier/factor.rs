@@ -5,60 +5,52 @@
 //! M x = S b,   λ = S x
 //! ```
 //!
-//! Scaling judges rows of different units and masses of 1e9:1 by one threshold. A plain LDLᵀ of M is tried first.
-//! Where a pivot is tiny, or the solution does not satisfy the equation, M is singular to working precision
-//! (redundant rows), and the regularised factor of `singular.rs` takes over.
+//! Rows that are left out have S = 0 and λ = 0: inactive rows, rows without a gradient, and rows that follow from
+//! others (`independent.rs`). Over the other rows M is positive definite, and L D Lᵀ exists. Its pivots may still be as
+//! small as the ratio of two masses; a pivot that roundoff has taken is replaced, and the solution is refined.
 
 use super::memory::FactorMemory;
-use crate::linalg::{Factor, rank_of};
+use crate::linalg::{Factor, SmallPivots};
 use crate::structure::MatrixStructure;
 
-/// Pivot of the scaled matrix below which M counts as singular. Pivots of regular systems are about the smallest
-/// ratio of inverse masses (1e-9 for a load of a billion beads); roundoff leaves some 1e-15 of a zero.
-const TINY_PIVOT: f64 = 1e-12;
+/// Pivot of M up to which roundoff may have taken it: a few hundred roundings of the unit diagonal.
+const ROUNDOFF: f64 = 1e-13;
 
-/// Relative residual above which a solution of the plain factor is refused. Under a load of a billion beads x is a
-/// billion times b, and the rounding of x alone gives a residual of 1e-7; G would let such a load fall.
+/// The pivot in place of one that roundoff has taken. Refinement shrinks the error by this number over the true pivot
+/// each pass, and roundoff is amplified by its inverse.
+const INSTEAD: f64 = 1e-8;
+
+/// Relative residual above which a solution is refined. Under a load of a billion beads x is a billion times b, and the
+/// rounding of x alone gives a residual of 1e-7.
 const ACCEPTED_RESIDUAL: f64 = 1e-6;
 
-/// Order above which the rank is not computed, since the work grows with its cube; only the deficiency is reported.
-const RANK_UP_TO: usize = 1200;
+/// Relative residual at which refinement stops: a few times roundoff.
+const REFINED: f64 = 1e-14;
 
-/// The solution of a singular A λ = b that is wanted, and its accuracy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SolveFor {
-    /// The λ of least norm: for terms and tensions that people read.
-    LeastNorm,
-    /// Any λ that gives the constraint force to roundoff: for q̈ and velocities.
-    Force,
-    /// Any λ that nearly gives it: for a Newton correction, whose residual is evaluated afterwards.
-    Correction,
-}
+/// Passes of refinement: it takes two to five where it converges.
+const PASSES: usize = 10;
 
 /// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
 #[derive(Clone, Debug)]
 pub(crate) struct MultiplierSolver {
-    pub(super) factor: Factor,
+    factor: Factor,
     /// S, zero for rows that are left out.
     scale: Vec<f64>,
     /// M, in the slots of A.
-    pub(super) scaled: Vec<f64>,
-    /// Whether G is in use.
-    pub(crate) deficient: bool,
-    /// δ of G (`singular.rs`).
-    pub(super) delta: f64,
-    /// The state of the A that is factored, and whether A was singular.
+    scaled: Vec<f64>,
+    /// Rows left out because they follow from others, ascending.
+    dependent: Vec<u32>,
+    /// The smallest pivot of the factor at hand.
+    smallest: f64,
+    /// Whether pivots were replaced, so that every solution is refined.
+    is_perturbed: bool,
+    /// The state of the A that is factored.
     pub(crate) memory: FactorMemory,
-    /// Whether M has a null space. With hubs, G may be needed although M has none.
-    pub(crate) singular: bool,
-    /// Number of rows left out of the last factorization.
-    dropped: usize,
     pub(crate) factorizations: usize,
-    /// x, r = b − M x, y of null(y), and S b.
-    pub(super) x: Vec<f64>,
-    pub(super) r: Vec<f64>,
-    pub(super) y: Vec<f64>,
-    pub(super) b: Vec<f64>,
+    /// x, r = b − M x, and S b.
+    x: Vec<f64>,
+    r: Vec<f64>,
+    b: Vec<f64>,
 }
 
 impl MultiplierSolver {
@@ -68,24 +60,75 @@ impl MultiplierSolver {
             factor: Factor::with(&matrix.symbolic),
             scale: vec![0.0; m],
             scaled: vec![0.0; matrix.pattern.len()],
-            deficient: false,
-            delta: 0.0,
+            dependent: Vec::new(),
+            smallest: f64::INFINITY,
+            is_perturbed: false,
             memory: FactorMemory::default(),
-            singular: false,
-            dropped: 0,
             factorizations: 0,
             x: vec![0.0; m],
             r: vec![0.0; m],
-            y: vec![0.0; m],
             b: vec![0.0; m],
         }
     }
 
-    /// Factors A + ε I. Inactive rows and rows without a gradient (a zero on the diagonal) are left out: their λ is
-    /// zero. `inactive` may be empty: every row is active.
-    pub(crate) fn factor(&mut self, matrix: &MatrixStructure, A: &[f64], epsilon: f64, inactive: &[bool]) {
+    /// Factors A + ε I without the rows that are inactive or dependent, or that have no gradient (a zero on the
+    /// diagonal). `inactive` may be empty: every row is active. Returns the smallest pivot; one that is not positive
+    /// means that there is no factor.
+    pub(crate) fn factor(
+        &mut self,
+        matrix: &MatrixStructure,
+        A: &[f64],
+        epsilon: f64,
+        inactive: &[bool],
+        dependent: &[u32],
+    ) -> f64 {
+        self.scale_rows(matrix, A, epsilon, inactive, dependent);
+        self.is_perturbed = false;
+        self.factorizations += 1;
+        self.smallest = self.factor.factor(&matrix.pattern, &self.scaled, 0.0);
+        self.smallest
+    }
+
+    /// The same with a number in place of every pivot that roundoff has taken: there is a factor in any case.
+    pub(crate) fn factor_perturbed(
+        &mut self,
+        matrix: &MatrixStructure,
+        A: &[f64],
+        epsilon: f64,
+        inactive: &[bool],
+        dependent: &[u32],
+    ) {
+        self.scale_rows(matrix, A, epsilon, inactive, dependent);
+        self.factorizations += 1;
+        let mut met = Vec::new();
+        let mut small = SmallPivots { shift: 0.0, below: ROUNDOFF, instead: Some(INSTEAD), met: &mut met };
+        self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
+        self.is_perturbed = !met.is_empty();
+    }
+
+    /// The smallest pivot of the factor at hand.
+    pub(crate) fn smallest_pivot(&self) -> f64 {
+        self.smallest
+    }
+
+    /// The rows left out of the factor at hand because they follow from others, ascending.
+    pub(crate) fn dependent(&self) -> &[u32] {
+        &self.dependent
+    }
+
+    /// S and M for A + ε I; keeps which rows are left out.
+    pub(super) fn scale_rows(
+        &mut self,
+        matrix: &MatrixStructure,
+        A: &[f64],
+        epsilon: f64,
+        inactive: &[bool],
+        dependent: &[u32],
+    ) {
         let pattern = &matrix.pattern;
         self.memory.forget();
+        self.dependent.clear();
+        self.dependent.extend_from_slice(dependent);
         // r = diag(A + ε I), to which hubs add their part.
         for i in 0..self.r.len() {
             self.r[i] = A[pattern.diagonal(i)] + epsilon;
@@ -94,7 +137,6 @@ impl MultiplierSolver {
             self.r[on_hub.row as usize] += A[on_hub.slot as usize] * A[on_hub.slot as usize];
         }
         // S.
-        self.dropped = 0;
         for (i, &row) in matrix.order.iter().enumerate() {
             if matrix.is_hub(row) {
                 self.scale[i] = 1.0;
@@ -103,8 +145,8 @@ impl MultiplierSolver {
             let diagonal = self.r[i];
             let inactive = inactive.get(row as usize).is_some_and(|inactive| *inactive);
             let is_kept = !matrix.inert[row as usize] && !inactive && diagonal > 0.0;
-            self.scale[i] = if is_kept { 1.0 / diagonal.sqrt() } else { 0.0 };
-            self.dropped += usize::from(!is_kept);
+            let is_dependent = !dependent.is_empty() && dependent.binary_search(&row).is_ok();
+            self.scale[i] = if is_kept && !is_dependent { 1.0 / diagonal.sqrt() } else { 0.0 };
         }
         // M.
         for i in 0..self.scale.len() {
@@ -124,30 +166,76 @@ impl MultiplierSolver {
                 }
             }
         }
-        // L D Lᵀ = M, or M + δ I.
-        self.deficient = false;
-        if self.memory.stays_deficient {
-            return self.factor_as_before(matrix);
-        }
-        self.singular = false;
+    }
+
+    /// L D Lᵀ of the M at hand without the rows whose pivots are up to `below`; returns their places in the order of
+    /// elimination, and their pivots.
+    pub(super) fn factor_waiting(&mut self, matrix: &MatrixStructure, below: f64) -> Vec<(usize, f64)> {
+        let mut met = Vec::new();
+        let mut small = SmallPivots { shift: 0.0, below, instead: Some(f64::INFINITY), met: &mut met };
         self.factorizations += 1;
-        let smallest = self.factor.factor(pattern, &self.scaled, 0.0);
-        if smallest.is_nan() || smallest < TINY_PIVOT {
-            self.regularize(matrix);
+        self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
+        met
+    }
+
+    /// λ ← S x with M x = S b, zero in the rows that wait and in those left out.
+    pub(super) fn solve_waiting(&mut self, matrix: &MatrixStructure, b: &[f64], lambda: &mut [f64]) {
+        self.scale_into(matrix, b);
+        self.x.copy_from_slice(&self.b);
+        self.factor.solve(&mut self.x);
+        self.scale_out(matrix, lambda);
+    }
+
+    /// λ ← (A + ε I)⁻¹ b, zero in the rows that are left out.
+    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], lambda: &mut [f64]) {
+        self.scale_into(matrix, b);
+        self.x.copy_from_slice(&self.b);
+        self.factor.solve(&mut self.x);
+        self.residual(matrix);
+        let size = largest(&self.b);
+        // A right-hand side that is not finite does not come from the matrix; the step will report it.
+        if size.is_finite() && !(!self.is_perturbed && largest(&self.r) <= ACCEPTED_RESIDUAL * size) {
+            self.refine(matrix, size);
+        }
+        self.scale_out(matrix, lambda);
+    }
+
+    /// x ← x + M⁻¹ (b − M x), as long as the residual halves.
+    fn refine(&mut self, matrix: &MatrixStructure, size: f64) {
+        let mut reached = largest(&self.r);
+        for _ in 0..PASSES {
+            if reached.is_nan() || reached <= REFINED * size {
+                break;
+            }
+            self.factor.solve(&mut self.r);
+            for i in 0..self.x.len() {
+                self.x[i] += self.r[i];
+            }
+            self.residual(matrix);
+            let last = std::mem::replace(&mut reached, largest(&self.r));
+            if reached > 0.5 * last {
+                break;
+            }
         }
     }
 
-    /// λ ← (A + ε I)⁻¹ b; where the matrix is singular, a λ that comes nearest, as `wanted` says.
-    pub(crate) fn solve(&mut self, matrix: &MatrixStructure, b: &[f64], wanted: SolveFor, lambda: &mut [f64]) {
+    /// r ← b − M x.
+    fn residual(&mut self, matrix: &MatrixStructure) {
+        matrix.pattern.multiply(&self.scaled, &self.x, &mut self.r);
+        for i in 0..self.r.len() {
+            self.r[i] = self.b[i] - self.r[i];
+        }
+    }
+
+    /// S b, in the order of elimination.
+    fn scale_into(&mut self, matrix: &MatrixStructure, b: &[f64]) {
         for (i, &row) in matrix.order.iter().enumerate() {
             self.b[i] = if matrix.is_hub(row) { 0.0 } else { self.scale[i] * b[row as usize] };
         }
-        if !self.deficient && !self.solve_plain(matrix) {
-            self.regularize(matrix);
-        }
-        if self.deficient {
-            self.solve_singular(matrix, wanted);
-        }
+    }
+
+    /// λ ← S x.
+    fn scale_out(&self, matrix: &MatrixStructure, lambda: &mut [f64]) {
         for (i, &row) in matrix.order.iter().enumerate() {
             if !matrix.is_hub(row) {
                 lambda[row as usize] = self.scale[i] * self.x[i];
@@ -155,25 +243,7 @@ impl MultiplierSolver {
         }
     }
 
-    /// x by the plain factor; whether it satisfies the equation.
-    fn solve_plain(&mut self, matrix: &MatrixStructure) -> bool {
-        self.x.copy_from_slice(&self.b);
-        self.factor.solve(&mut self.x);
-        self.residual(matrix);
-        let (residual, size) = (largest_or_nan(&self.r), largest_or_nan(&self.b));
-        // A right-hand side that is not finite does not come from the matrix; the step will report it.
-        residual <= ACCEPTED_RESIDUAL * size || !size.is_finite()
-    }
-
-    /// r ← b − M x.
-    pub(super) fn residual(&mut self, matrix: &MatrixStructure) {
-        matrix.pattern.multiply(&self.scaled, &self.x, &mut self.r);
-        for i in 0..self.r.len() {
-            self.r[i] = self.b[i] - self.r[i];
-        }
-    }
-
-    /// The rows that were left out of the last factorization, ascending.
+    /// The rows that were left out of the last factorization for any reason, ascending.
     pub(crate) fn left_out(&self, matrix: &MatrixStructure) -> Vec<usize> {
         let all = matrix.order.iter().zip(&self.scale);
         let mut rows: Vec<usize> = all.filter(|&(_, &scale)| scale == 0.0).map(|(&row, _)| row as usize).collect();
@@ -181,22 +251,14 @@ impl MultiplierSolver {
         rows
     }
 
-    /// Rank of A at the last factorization; `None` where computing it would take too long.
-    pub(crate) fn rank(&self, matrix: &MatrixStructure) -> Option<usize> {
-        let m = matrix.inert.len();
-        if !self.singular {
-            return Some(m - self.dropped);
-        }
-        if m > RANK_UP_TO {
-            return None;
-        }
-        let is_hub = |i: usize| matrix.is_hub(matrix.order[i]);
-        Some(rank_of(&matrix.pattern, &self.scaled, is_hub, |i| self.scale[i] > 0.0))
+    /// Rank of A at the last factorization.
+    pub(crate) fn rank(&self, matrix: &MatrixStructure) -> usize {
+        matrix.inert.len() - self.left_out(matrix).len()
     }
 }
 
 /// max |x_i|; not a number if any is not.
-pub(super) fn largest_or_nan(x: &[f64]) -> f64 {
+fn largest(x: &[f64]) -> f64 {
     let mut largest = 0.0_f64;
     for &value in x {
         if value.is_nan() {

@@ -1,4 +1,4 @@
-//! FactorMemory: the state whose A is factored, and whether A was found singular.
+//! FactorMemory: the state whose A is factored.
 //!
 //! Invariant: if `at` is not empty, the solver holds the factor of A = J W Jᵀ, without ε, at that q and t, for the rows
 //! that were active then. So
@@ -8,21 +8,17 @@
 //! - `is_of` asks for the inactive rows, too: other modes of contacts are another A.
 //!
 //! A factor that is kept must not change a bit of the motion: readers of terms between two steps, and restarts from a
-//! saved state, get the same motion. The factor of a singular A is therefore not kept by the methods that read λ from
-//! it; they factor again, and ask again whether A is singular.
+//! saved state, get the same motion.
 
 use crate::state::State;
 
-/// The state and the active rows of the factor at hand, and whether A was singular.
+/// The state and the active rows of the factor at hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FactorMemory {
     /// q with t behind it; empty if it is not known.
     at: Vec<f64>,
     /// The inactive rows of that factor; empty in a system without contacts.
     inactive: Vec<bool>,
-    /// Whether the next factorization takes G (`singular.rs`) at once: an A that was singular is taken to stay so until
-    /// `ask_again`.
-    pub(crate) stays_deficient: bool,
 }
 
 impl FactorMemory {
@@ -42,10 +38,5 @@ impl FactorMemory {
     /// The factor at hand belongs to no known state.
     pub(crate) fn forget(&mut self) {
         self.at.clear();
-    }
-
-    /// The next factorization tries the plain factor again, whatever A was before.
-    pub(crate) fn ask_again(&mut self) {
-        self.stays_deficient = false;
     }
 }

@@ -1,6 +1,6 @@
 //! The equation for every system, and the quantities of one evaluation.
 //!
-//! `equation.rs` solves it; its parts are `rhs.rs` (b), `matrix.rs` (A), `factor.rs` and `singular.rs` (λ),
+//! `equation.rs` solves it; its parts are `rhs.rs` (b), `matrix.rs` (A), `factor.rs` and `independent.rs` (λ),
 //! `reaction.rs` (Q̂ and q̈) and `friction.rs` (F). `active.rs` keeps the rows of inactive constraints out of it,
 //! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored.
 
@@ -8,22 +8,25 @@ mod active;
 mod equation;
 mod factor;
 mod friction;
+mod independent;
 mod matrix;
 mod memory;
 mod pushes;
 mod reaction;
 mod rhs;
-mod singular;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use factor::{MultiplierSolver, SolveFor};
+pub(crate) use equation::NEAR;
+pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;
 
 use crate::constraint::Rows;
 use crate::report::Warning;
+use crate::state::Rank;
 use crate::system::System;
+use std::sync::Arc;
 
 /// Every quantity of one evaluation, in arrays that are made once and written again.
 ///
@@ -47,6 +50,8 @@ pub(crate) struct Equation {
     /// The sliding contacts, with their slips in the substep being tried.
     pub(crate) sliding: Vec<Sliding>,
     pub(crate) friction: Friction,
+    /// The rows that follow from others, with the rows active that were when they were found.
+    pub(crate) rank: Option<Arc<Rank>>,
     /// W Jᵀλ, or W (Jᵀλ + F), as written last (`pushes.rs`): d·n numbers; empty until then.
     pub(crate) W_JT_lambda: Vec<f64>,
 }
@@ -75,6 +80,7 @@ impl Equation {
             gaps: Gaps::default(),
             sliding: Vec::new(),
             friction: Friction::default(),
+            rank: None,
             W_JT_lambda: Vec::new(),
         }
     }
@@ -86,12 +92,13 @@ impl Equation {
             .solver
             .left_out(&system.matrix)
             .into_iter()
-            .filter(|&row| !system.matrix.inert[row] && !self.is_inactive(row));
+            .filter(|&row| !system.matrix.inert[row] && !self.is_inactive(row))
+            .filter(|&row| self.solver.dependent().binary_search(&(row as u32)).is_err());
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });
         }
-        if self.solver.singular {
+        if !self.solver.dependent().is_empty() {
             warnings.push(Warning::Singular);
         }
         warnings

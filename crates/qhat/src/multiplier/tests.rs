@@ -1,7 +1,7 @@
 //! The multiplier solve on systems of known shape, timed beside its residual:
 //! `cargo test --release --package qhat --lib -- --ignored --nocapture timed`.
 
-use super::{Equation, SolveFor};
+use super::Equation;
 use crate::point::Motion;
 use crate::{Dimension, Distance, Gravity, Particle, ParticleId, State, System, SystemBuilder};
 use std::time::Instant;
@@ -118,7 +118,7 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
         equation.factor::<2>(&system, 0.0);
         factor = factor.min(clock.elapsed().as_secs_f64());
         let clock = Instant::now();
-        equation.solver.solve(&system.matrix, &b, SolveFor::LeastNorm, &mut lambda);
+        equation.solver.solve(&system.matrix, &b, &mut lambda);
         solve = solve.min(clock.elapsed().as_secs_f64());
         if turn >= 4 && start.elapsed().as_secs_f64() > 0.5 {
             break;
@@ -133,7 +133,7 @@ fn timed(name: &str, build: &dyn Fn() -> (System, State)) {
         factor / m as f64 * 1e9,
         solve * 1e3,
         solve / m as f64 * 1e9,
-        if equation.solver.deficient { ", singular" } else { "" }
+        if equation.solver.dependent().is_empty() { "" } else { ", singular" }
     );
 }
 

@@ -84,6 +84,8 @@ pub(crate) struct ChainPlan {
     pub(crate) copies: Vec<ChainSlot>,
     /// Particles held by nails, with their points.
     pub(crate) nailed: Vec<(usize, [f64; 3])>,
+    /// Whether a chain is held at both ends: its rows depend on each other where it is straight.
+    pub(crate) may_lose_rank: bool,
 }
 
 /// An open chain: its particles in order and the lengths of the rods between them.
@@ -109,6 +111,10 @@ impl ChainPlan {
             }
         }
         let mut chains = chains(constraints, &is_held)?;
+        let ends = |chain: &Chain| {
+            [chain.particles.first(), chain.particles.last()].map(|end| end.is_some_and(|&p| is_held[p]))
+        };
+        plan.may_lose_rank = chains.iter().any(|chain| ends(chain) == [true, true]);
         chains.sort_by_key(|chain| std::cmp::Reverse(chain.lengths.len()));
         let mut rest = &chains[..];
         while let Some(longest) = rest.first().map(|chain| chain.lengths.len()) {

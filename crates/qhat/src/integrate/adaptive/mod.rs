@@ -86,12 +86,11 @@ pub(crate) fn begin<const D: usize>(frame: &mut Frame<'_>, state: &State, carry:
     let is_factored = workspace.is_factored_at(state);
     let equation = &mut workspace.equation;
     // Reading terms between frames, or starting from a saved state, must not change a bit of the motion that follows.
-    if is_factored && !equation.solver.deficient && !carry.deficient {
+    if is_factored {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         equation.apply_forces(system, motion);
         equation.constrain(system, motion);
     } else {
-        equation.solver.memory.ask_again();
         return_to::<D>(system, state, equation);
     }
     carry.lambda

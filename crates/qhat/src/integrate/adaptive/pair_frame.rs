@@ -2,11 +2,12 @@
 
 use super::pair::{Pair, PairStepper};
 use super::{End, Substeps, begin};
-use crate::chains::Chains;
+use crate::chains::{Chains, TINY_PIVOT};
 use crate::error::StepError;
 use crate::integrate::events::EventStepper;
 use crate::integrate::field::{ChainField, GeneralField};
 use crate::integrate::frame::Frame;
+use crate::multiplier::NEAR;
 use crate::report::{Solver, StepReport};
 use crate::settings::Feedback;
 use crate::state::State;
@@ -34,9 +35,13 @@ pub(crate) fn carry_on<const D: usize>(
     let mut carry = state.carry.take();
     let mut run = PairFrame { pair, frame, substeps };
     if let Some(plan) = &system.chains
-        && !carry.as_ref().is_some_and(|carry| carry.deficient)
+        && !carry.as_ref().is_some_and(|carry| carry.is_nearly_singular)
     {
         run.substeps.report.solver = Solver::Chains;
+        if plan.may_lose_rank && state.rank.is_none() {
+            run.frame.workspace.solve::<D>(system, state, &Feedback::NONE);
+            state.rank.clone_from(&run.frame.workspace.equation.rank);
+        }
         match run.along_chains::<D>(plan, state) {
             Ok(End::Singular) => carry = None,
             Ok(end) => return Ok((run.substeps.finish(run.frame, state, None), end == End::Whole)),
@@ -75,6 +80,7 @@ impl PairFrame<'_, '_> {
         let Frame { system, settings, ref mut workspace, .. } = *self.frame;
         let mut stages = std::mem::take(&mut workspace.stages);
         let chains = workspace.chains.get_or_insert_with(|| Chains::new(system, plan));
+        chains.tiny = state.rank.as_ref().filter(|_| plan.may_lose_rank).map_or(TINY_PIVOT, |rank| NEAR * rank.least);
         let field = ChainField::<D> { system, plan, chains };
         let mut stepper = PairStepper { pair: self.pair, field, system, settings, stages: &mut stages };
         stepper.begin(state);

@@ -237,17 +237,19 @@ impl<'a> Substeps<'a> {
     pub(crate) fn finish(mut self, frame: &mut Frame<'_>, state: &mut State, lambda: Option<Vec<f64>>) -> StepReport {
         frame.workspace.watch = self.watch;
         let equation = &frame.workspace.equation;
-        let (lambda, drives, deficient) = match lambda {
+        let (lambda, drives, is_nearly_singular) = match lambda {
             Some(lambda) => {
                 for warning in equation.warnings(self.system) {
                     self.report.warn(warning);
                 }
                 let drives = energy::drive_power(self.system, &equation.rows.Ct, &lambda);
-                (lambda, drives, equation.solver.deficient)
+                state.rank = equation.rank_to_keep();
+                (lambda, drives, equation.is_nearly_singular())
             }
             None => (Vec::new(), 0.0, false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, drives, resting: 0 });
+        state.carry =
+            Some(Carry { lambda, substep: self.proposed, is_nearly_singular, previous: None, drives, resting: 0 });
         self.report.energy = energy::energy(self.system, state);
         self.report
     }

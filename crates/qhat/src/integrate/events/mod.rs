@@ -20,7 +20,6 @@ use crate::contact::{
 use crate::drift::Drift;
 use crate::error::StepError;
 use crate::modes::{Mode, Modes};
-use crate::multiplier::SolveFor;
 use crate::point::Motion;
 use crate::report::Event;
 use crate::settings::Feedback;
@@ -175,7 +174,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         let (equation, motion) = (&mut workspace.equation, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t });
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
         if is_closed || modes.broken.iter().any(|broken| !broken) {
-            equation.solve(system, motion, &Feedback::NONE, true, SolveFor::Force);
+            equation.solve(system, motion, &Feedback::NONE, true);
         }
         let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
         EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);

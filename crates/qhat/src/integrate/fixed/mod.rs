@@ -46,6 +46,7 @@ pub(crate) fn run<const D: usize>(
     state.work.stabilization += work.stabilization;
     state.work.drives += work.drives;
     state.carry = None;
+    state.rank.clone_from(&frame.workspace.equation.rank);
     if let Some(watch) = &mut frame.workspace.watch {
         watch.note(frame.system, state);
     }

@@ -15,12 +15,7 @@ pub(crate) static RK4: Tableau =
 pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> StepWork {
     let (system, h) = (frame.system, frame.length);
     let workspace = &mut *frame.workspace;
-    // A factor of a singular A is not kept, so that readers of terms between two steps change no bit of the motion.
-    let is_regular = !workspace.equation.solver.deficient;
-    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state) && is_regular;
-    if !is_factored {
-        workspace.equation.solver.memory.ask_again();
-    }
+    let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state);
     let mut stages = std::mem::take(&mut workspace.stages);
     let mut field = GeneralField::<D> { system, workspace, feedback: system.feedback, is_factored };
     stages.resize(field.blocks());

@@ -81,9 +81,10 @@ pub(crate) fn frame<const D: usize>(
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
         let equation = frame.workspace.solve::<D>(system, state, &Feedback::NONE);
-        let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
+        let (lambda, is_nearly_singular) = (equation.lambda.clone(), equation.is_nearly_singular());
+        state.rank.clone_from(&equation.rank);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
-        state.carry = Some(Carry { lambda, substep: length, deficient, previous: None, drives, resting: 0 });
+        state.carry = Some(Carry { lambda, substep: length, is_nearly_singular, previous: None, drives, resting: 0 });
     }
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
