@@ -8,6 +8,7 @@ use crate::chains::{Chains, Projected};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
+use crate::multiplier::APPROACH;
 use crate::point::{Motion, largest};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
@@ -17,6 +18,12 @@ use crate::system::System;
 /// Newton iterations of one projection. The factor is that of the last stage, near by, and the correction is small: a
 /// projection that takes more is not worth its substep.
 const MAX_ITERATIONS: usize = 8;
+
+/// Newton iterations that take C from its tolerance to roundoff.
+const SHARPENED: usize = 2;
+
+/// Part of a substep over which the margin is differenced.
+const LOOK_AHEAD: f64 = 0.01;
 
 /// Power that no potential accounts for [W].
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,6 +52,12 @@ pub(super) trait Field {
 
     /// The residuals of C = 0 and Ċ = 0 that the last projection left.
     fn drift(&self, q: &[F8], qd: &[F8]) -> Drift;
+
+    /// The time after which the motion comes to a position where the rank drops, if that is within a few h; `None` at
+    /// other positions, and where it is not known.
+    fn time_to_singular(&mut self, _q: &[F8], _qd: &[F8], _t: f64, _h: f64) -> Option<f64> {
+        None
+    }
 
     /// Gives up the motion projected last: the next call of `accelerate` is at the motion before it.
     fn turn_back(&mut self);
@@ -118,6 +131,14 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
                 if !equation.is_nearly_singular() {
+                    if equation.margin().is_some_and(|margin| margin < APPROACH) {
+                        for _ in 0..SHARPENED {
+                            equation.solver.solve(matrix, &equation.rows.C, delta);
+                            equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
+                            equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
+                        }
+                        equation.factor::<D>(system, 0.0);
+                    }
                     equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
                     equation.solver.solve(matrix, &equation.b.sum, delta);
                     equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_qd);
@@ -144,6 +165,27 @@ impl<const D: usize> Field for GeneralField<'_, D> {
 
     fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
         drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.equation.inactive, &self.workspace.q)
+    }
+
+    fn time_to_singular(&mut self, q: &[F8], qd: &[F8], t: f64, h: f64) -> Option<f64> {
+        let Workspace { equation, q: flat_q, qd: flat_qd, .. } = &mut *self.workspace;
+        if !self.is_factored {
+            unpack(q, flat_q);
+            unpack(qd, flat_qd);
+            equation.constrain(self.system, Motion::<D> { q: flat_q, qd: flat_qd, t });
+            equation.factor::<D>(self.system, 0.0);
+            self.is_factored = true;
+        }
+        let here = equation.margin().filter(|&margin| margin < APPROACH)?;
+        let ahead = LOOK_AHEAD * h;
+        unpack(q, flat_q);
+        unpack(qd, flat_qd);
+        flat_q.iter_mut().zip(&*flat_qd).for_each(|(x, v)| *x += ahead * v);
+        equation.constrain(self.system, Motion::<D> { q: flat_q, qd: flat_qd, t: t + ahead });
+        equation.factor::<D>(self.system, 0.0);
+        self.is_factored = false;
+        let next = equation.margin().unwrap_or(0.0);
+        (next < here).then(|| ahead * here / (here - next))
     }
 
     fn turn_back(&mut self) {

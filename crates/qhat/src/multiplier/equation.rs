@@ -20,6 +20,10 @@ const INDEPENDENT: f64 = 1e-2;
 /// Part of the smallest pivot where the rank was found below which the question is asked again: the rank may drop here.
 const DOUBTFUL: f64 = 1e-4;
 
+/// Margin to a singular position below which the motion approaches it: C is then held to roundoff, and substeps are
+/// placed. Open chains, which hold C to its tolerance, go over to the general path there.
+pub(crate) const APPROACH: f64 = 0.2;
+
 /// Part of the smallest pivot where the rank was found below which a position is near one where the rank drops: the
 /// sine of the least independent row is then a hundredth of what it was.
 pub(crate) const NEAR: f64 = 1e-4;
@@ -99,6 +103,13 @@ impl Equation {
             return Some(rank.clone());
         }
         Some(Arc::new(Rank { least: smallest, ..Rank::clone(rank) }))
+    }
+
+    /// The sine of the least independent row over the largest that it had: how far a singular position is. `None` where
+    /// the rank has already dropped.
+    pub(crate) fn margin(&self) -> Option<f64> {
+        let rank = self.rank.as_ref()?;
+        (self.solver.dependent() == rank.dependent).then(|| (self.solver.smallest_pivot() / rank.least).sqrt())
     }
 
     /// Whether a row is left out because it follows from others at any position.

@@ -17,7 +17,7 @@ mod rhs;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use equation::NEAR;
+pub(crate) use equation::APPROACH;
 pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;

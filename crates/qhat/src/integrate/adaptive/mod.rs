@@ -5,6 +5,7 @@
 //! steppers are RATTLE (`integrate/rattle.rs`) and pairs with events (`integrate/events/`).
 
 pub(crate) mod control;
+mod crossing;
 pub(crate) mod dop853;
 pub(crate) mod dopri5;
 pub(crate) mod pair;
@@ -32,6 +33,12 @@ pub(crate) trait Stepper {
 
     /// The longest substep worth trying from here [s].
     fn longest(&mut self, state: &State) -> f64;
+
+    /// The length of the next substep [s] where the motion comes to a singular position within about h, of the frame's
+    /// `remaining` time; `None` elsewhere.
+    fn across(&mut self, _state: &State, _h: f64, _remaining: f64) -> Option<f64> {
+        None
+    }
 
     /// Tries one substep of h, which brings t to `end`. A substep whose error is not accepted need not be finished.
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome;

@@ -1,5 +1,6 @@
 //! Embedded Runge–Kutta pairs: substeps by the estimated error, each projected onto the constraints.
 
+use super::crossing::crossing;
 use super::{Attempt, Outcome, Stepper, accepts};
 use crate::chains::Projected;
 use crate::drift::Drift;
@@ -66,6 +67,11 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
 
     fn longest(&mut self, _: &State) -> f64 {
         f64::INFINITY
+    }
+
+    fn across(&mut self, state: &State, h: f64, remaining: f64) -> Option<f64> {
+        let time = self.field.time_to_singular(&self.stages.q, &self.stages.qd, state.t, h.min(remaining))?;
+        crossing(time, h, remaining, self.pair.tableau.middle())
     }
 
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {

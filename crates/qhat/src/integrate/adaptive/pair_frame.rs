@@ -7,7 +7,7 @@ use crate::error::StepError;
 use crate::integrate::events::EventStepper;
 use crate::integrate::field::{ChainField, GeneralField};
 use crate::integrate::frame::Frame;
-use crate::multiplier::NEAR;
+use crate::multiplier::APPROACH;
 use crate::report::{Solver, StepReport};
 use crate::settings::Feedback;
 use crate::state::State;
@@ -80,7 +80,11 @@ impl PairFrame<'_, '_> {
         let Frame { system, settings, ref mut workspace, .. } = *self.frame;
         let mut stages = std::mem::take(&mut workspace.stages);
         let chains = workspace.chains.get_or_insert_with(|| Chains::new(system, plan));
-        chains.tiny = state.rank.as_ref().filter(|_| plan.may_lose_rank).map_or(TINY_PIVOT, |rank| NEAR * rank.least);
+        chains.tiny = state
+            .rank
+            .as_ref()
+            .filter(|_| plan.may_lose_rank)
+            .map_or(TINY_PIVOT, |rank| APPROACH * APPROACH * rank.least);
         let field = ChainField::<D> { system, plan, chains };
         let mut stepper = PairStepper { pair: self.pair, field, system, settings, stages: &mut stages };
         stepper.begin(state);

@@ -7,6 +7,7 @@ use crate::error::StepError;
 use crate::integrate::check_finite;
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
+use crate::multiplier::APPROACH;
 use crate::point::Motion;
 use crate::report::StepReport;
 use crate::settings::Settings;
@@ -44,6 +45,8 @@ pub(crate) enum End {
 #[derive(Clone, Copy, Debug)]
 struct Proposal {
     h: f64,
+    /// Whether its length was chosen for a reason other than its error.
+    is_placed: bool,
     end: f64,
     done: f64,
 }
@@ -100,7 +103,9 @@ impl<'a> Substeps<'a> {
             if self.is_hopeless() {
                 return Ok(End::OutOfWork);
             }
-            let substep = self.propose(method.longest(state));
+            let longest = method.longest(state);
+            let across = method.across(state, self.proposed.min(longest), self.length - self.done);
+            let substep = self.propose(longest, across);
             let outcome = method.attempt(state, substep.h, substep.end);
             match self.judge(outcome, method, state)? {
                 Verdict::Singular => return Ok(End::Singular),
@@ -131,12 +136,13 @@ impl<'a> Substeps<'a> {
         self.tried >= self.limit || (self.tried >= 16 && part > 0.125 && 4.0 * self.done < part * self.length)
     }
 
-    /// The next substep, no longer than the method's longest.
-    fn propose(&mut self, longest: f64) -> Proposal {
+    /// The next substep, no longer than the method's longest; or the one that leads across a singular position.
+    fn propose(&mut self, longest: f64, across: Option<f64>) -> Proposal {
         self.tried += 1;
-        let h = fit(self.proposed.min(longest), self.length - self.done);
+        let remaining = self.length - self.done;
+        let h = across.map_or_else(|| fit(self.proposed.min(longest), remaining), |h| h.min(remaining));
         let done = if h == self.length - self.done { self.length } else { self.done + h };
-        Proposal { h, end: self.start + done, done }
+        Proposal { h, is_placed: across.is_some(), end: self.start + done, done }
     }
 
     /// Whether an attempt is accepted.
@@ -167,10 +173,11 @@ impl<'a> Substeps<'a> {
 
     /// The substep as it was met: shorter than proposed if an event ends it.
     fn accept(&mut self, substep: Proposal, attempt: &Attempt, growth: f64) -> Proposal {
-        self.proposed = substep.h * growth;
+        let next = substep.h * growth;
+        self.proposed = if substep.is_placed { next.max(self.proposed) } else { next };
         if attempt.h < substep.h {
             let done = self.done + attempt.h;
-            return Proposal { h: attempt.h, end: self.start + done, done };
+            return Proposal { h: attempt.h, end: self.start + done, done, ..substep };
         }
         substep
     }
@@ -244,7 +251,7 @@ impl<'a> Substeps<'a> {
                 }
                 let drives = energy::drive_power(self.system, &equation.rows.Ct, &lambda);
                 state.rank = equation.rank_to_keep();
-                (lambda, drives, equation.is_nearly_singular())
+                (lambda, drives, equation.margin().is_none_or(|margin| margin < APPROACH))
             }
             None => (Vec::new(), 0.0, false),
         };

@@ -39,6 +39,14 @@ impl Tableau {
         Tableau { stages: rows.len(), a, at, end }
     }
 
+    /// The middle of the longest interval of a step without a stage, as a part of the step.
+    pub(in crate::integrate) fn middle(&self) -> f64 {
+        let mut times: Vec<f64> = self.at[..self.stages].iter().map(|at| at.c).collect();
+        times.sort_by(f64::total_cmp);
+        let longest = times.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+        longest.map_or(0.5, |ends| 0.5 * (ends[0] + ends[1]))
+    }
+
     /// The combination with weights e, for an error estimate: Σ e_i q̇_i and Σ e_i k_i, over h and without q.
     pub(in crate::integrate) const fn combination(&self, e: &[f64]) -> Combination {
         combination(&self.a, padded(e))
