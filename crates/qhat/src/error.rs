@@ -19,6 +19,30 @@ pub enum StepError {
         /// The first particle concerned.
         particle: String,
     },
+    /// C of a row is not continuous.
+    #[error(
+        "at t = {} s the residual of `{row}` jumps to {residual:.2e}: a function in it is not continuous there (an angle \
+         that passes its branch, a sign, a remainder); write it so that it goes on",
+        shown(*time)
+    )]
+    Jumps {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The row.
+        row: String,
+        /// C beyond the jump.
+        residual: f64,
+    },
+    /// No multipliers satisfy the equation of motion to six digits.
+    #[error(
+        "at t = {} s the constraint forces cannot be found to six digits: masses, lengths or forces are too many decades \
+         apart",
+        shown(*time)
+    )]
+    OutOfBalance {
+        /// t of the last good state \[s\].
+        time: f64,
+    },
     /// A constraint is violated beyond recognition.
     #[error(
         "at t = {} s the constraint `{row}` is off by {relative:.0} times its own size: the step h is too \

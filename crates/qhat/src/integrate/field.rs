@@ -59,6 +59,11 @@ pub(super) trait Field {
         None
     }
 
+    /// The largest relative residual of A λ = b since the last call.
+    fn imbalance(&mut self) -> f64 {
+        0.0
+    }
+
     /// Gives up the motion projected last: the next call of `accelerate` is at the motion before it.
     fn turn_back(&mut self);
 
@@ -165,6 +170,10 @@ impl<const D: usize> Field for GeneralField<'_, D> {
 
     fn drift(&self, _: &[F8], _: &[F8]) -> Drift {
         drift::<D>(self.system, &self.workspace.equation.rows, &self.workspace.equation.inactive, &self.workspace.q)
+    }
+
+    fn imbalance(&mut self) -> f64 {
+        self.workspace.equation.solver.take_imbalance()
     }
 
     fn time_to_singular(&mut self, q: &[F8], qd: &[F8], t: f64, h: f64) -> Option<f64> {

@@ -56,6 +56,15 @@ pub(super) fn project<const D: usize>(
     Ok(report)
 }
 
+/// The equation that a Newton step solves.
+#[derive(Clone, Copy)]
+enum Step {
+    /// J Δq = −C for rows that are independent of each other; the others follow.
+    Independent,
+    /// The least |J Δq + C|, rows scaled: where the rows contradict each other, all share what cannot be met.
+    LeastSquares,
+}
+
 /// A motion on its way onto the constraints.
 struct Projector<'a, const D: usize> {
     system: &'a System,
@@ -71,16 +80,36 @@ impl<const D: usize> Projector<'_, D> {
     fn positions(&mut self) -> Result<(f64, usize), StepError> {
         let (system, m) = (self.system, self.system.row_count());
         self.constrain();
+        let start = self.q.to_vec();
         let rigid = (0..m).filter(|&row| system.softness[row].is_rigid());
         let before = rigid.fold(0.0, |most: f64, row| most.max(self.equation.rows.C[row].abs()));
-        let mut delta = vec![0.0; m];
-        let mut start = self.q.to_vec();
+        for step in [Step::Independent, Step::LeastSquares] {
+            self.q.copy_from_slice(&start);
+            self.constrain();
+            if let Some(iterations) = self.newton(step) {
+                return Ok((before, iterations));
+            }
+        }
+        let (row, _) = worst_row(system, &self.equation.rows.C);
+        let residual = self.equation.rows.C.get(row).copied().unwrap_or(0.0);
+        Err(StepError::NotSatisfied { time: self.t, row: system.row_names[row].clone(), residual })
+    }
+
+    /// Newton's method on C = 0 from q; the number of its iterations if it gets there, else q is the nearest that it
+    /// came to.
+    fn newton(&mut self, step: Step) -> Option<usize> {
+        let system = self.system;
+        let mut delta = vec![0.0; system.row_count()];
+        let (mut start, mut has_asked) = (self.q.to_vec(), false);
         for iteration in 0..MAX_ITERATIONS {
             let off = self.off();
             if self.is_met(off) {
-                return Ok((before, iteration));
+                return Some(iteration);
             }
-            self.equation.factor::<D>(system, 0.0);
+            match step {
+                Step::Independent => self.equation.factor::<D>(system, 0.0),
+                Step::LeastSquares => self.equation.factor_least_squares::<D>(system),
+            }
             self.equation.solver.solve(&system.matrix, &self.equation.rows.C, &mut delta);
             let J = self.equation.rows.J.clone();
             start.copy_from_slice(self.q);
@@ -95,15 +124,15 @@ impl<const D: usize> Projector<'_, D> {
                 fraction *= 0.5;
             }
             if self.off() >= off {
-                break;
+                let (worst, _) = worst_row(system, &self.equation.rows.C);
+                if has_asked || !self.equation.follows(worst) {
+                    break;
+                }
+                // The rows that were kept do not say what this one says.
+                (self.equation.rank, has_asked) = (None, true);
             }
         }
-        let (row, off) = worst_row(system, &self.equation.rows.C);
-        let residual = self.equation.rows.C.get(row).copied().unwrap_or(0.0);
-        if self.is_met(off) {
-            return Ok((before, MAX_ITERATIONS));
-        }
-        Err(StepError::NotSatisfied { time: self.t, row: system.row_names[row].clone(), residual })
+        self.is_met(self.off()).then_some(MAX_ITERATIONS)
     }
 
     /// Takes Ċ out of q̇, unless it is roundoff.

@@ -95,6 +95,13 @@ impl Equation {
         });
     }
 
+    /// The factor of A + δ I in scaled rows, every active row among them: Jᵀλ then comes nearest to the right-hand side
+    /// where rows contradict each other.
+    pub(crate) fn factor_least_squares<const D: usize>(&mut self, system: &System) {
+        system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
+        self.solver.factor_shifted(&system.matrix, &self.A, &self.inactive);
+    }
+
     /// The rows that follow from others, for the next frame. Its smallest pivot is the largest that any position had: a
     /// motion may begin near a position where the rank drops.
     pub(crate) fn rank_to_keep(&self) -> Option<Arc<Rank>> {

@@ -44,9 +44,13 @@ pub(crate) struct MultiplierSolver {
     smallest: f64,
     /// Whether pivots were replaced, so that every solution is refined.
     is_perturbed: bool,
+    /// Whether a solution with a large residual is refined.
+    is_refined: bool,
     /// The state of the A that is factored.
     pub(crate) memory: FactorMemory,
     pub(crate) factorizations: usize,
+    /// The largest residual of a solution, relative to its right-hand side, since it was last taken.
+    imbalance: f64,
     /// x, r = b − M x, and S b.
     x: Vec<f64>,
     r: Vec<f64>,
@@ -63,8 +67,10 @@ impl MultiplierSolver {
             dependent: Vec::new(),
             smallest: f64::INFINITY,
             is_perturbed: false,
+            is_refined: true,
             memory: FactorMemory::default(),
             factorizations: 0,
+            imbalance: 0.0,
             x: vec![0.0; m],
             r: vec![0.0; m],
             b: vec![0.0; m],
@@ -83,7 +89,7 @@ impl MultiplierSolver {
         dependent: &[u32],
     ) -> f64 {
         self.scale_rows(matrix, A, epsilon, inactive, dependent);
-        self.is_perturbed = false;
+        (self.is_perturbed, self.is_refined) = (false, true);
         self.factorizations += 1;
         self.smallest = self.factor.factor(&matrix.pattern, &self.scaled, 0.0);
         self.smallest
@@ -103,7 +109,23 @@ impl MultiplierSolver {
         let mut met = Vec::new();
         let mut small = SmallPivots { shift: 0.0, below: ROUNDOFF, instead: Some(INSTEAD), met: &mut met };
         self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
-        self.is_perturbed = !met.is_empty();
+        (self.is_perturbed, self.is_refined) = (!met.is_empty(), true);
+    }
+
+    /// Factors M + δ I over all active rows.
+    pub(super) fn factor_shifted(&mut self, matrix: &MatrixStructure, A: &[f64], inactive: &[bool]) {
+        self.scale_rows(matrix, A, 0.0, inactive, &[]);
+        self.factorizations += 1;
+        let mut met = Vec::new();
+        let mut small = SmallPivots { shift: INSTEAD, below: ROUNDOFF, instead: Some(INSTEAD), met: &mut met };
+        self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
+        // A solution of a shifted matrix does not satisfy the equation, and is not to be refined.
+        self.is_refined = false;
+    }
+
+    /// The largest residual of a solution, relative to its right-hand side, since the last call.
+    pub(crate) fn take_imbalance(&mut self) -> f64 {
+        std::mem::take(&mut self.imbalance)
     }
 
     /// The smallest pivot of the factor at hand.
@@ -194,8 +216,10 @@ impl MultiplierSolver {
         self.residual(matrix);
         let size = largest(&self.b);
         // A right-hand side that is not finite does not come from the matrix; the step will report it.
-        if size.is_finite() && !(!self.is_perturbed && largest(&self.r) <= ACCEPTED_RESIDUAL * size) {
+        if self.is_refined && size.is_finite() && !(!self.is_perturbed && largest(&self.r) <= ACCEPTED_RESIDUAL * size)
+        {
             self.refine(matrix, size);
+            self.imbalance = self.imbalance.max(largest(&self.r) / size);
         }
         self.scale_out(matrix, lambda);
     }

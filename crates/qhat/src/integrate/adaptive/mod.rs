@@ -4,6 +4,7 @@
 //! length of a substep. `pair.rs` is the stepper of embedded Runge–Kutta pairs, `pair_frame.rs` their frame. The other
 //! steppers are RATTLE (`integrate/rattle.rs`) and pairs with events (`integrate/events/`).
 
+mod acceptance;
 pub(crate) mod control;
 mod crossing;
 pub(crate) mod dop853;
@@ -12,7 +13,8 @@ pub(crate) mod pair;
 pub(crate) mod pair_frame;
 mod substeps;
 
-pub(crate) use substeps::{End, Substeps, accepts};
+pub(crate) use acceptance::{Refusal, accepts};
+pub(crate) use substeps::{End, Substeps};
 
 use super::frame::Frame;
 use crate::drift::Drift;
@@ -62,6 +64,8 @@ pub(crate) enum Outcome {
     Met(Attempt),
     /// The constraints are not met: a shorter substep may do.
     NotMet,
+    /// The substep fails another condition of `acceptance.rs`: a shorter one may not.
+    Refused(Refusal),
     /// A is singular on this path; the caller falls back to the general one.
     Singular,
     /// No substep of any length will do.

@@ -1,5 +1,6 @@
 //! Embedded Runge–Kutta pairs: substeps by the estimated error, each projected onto the constraints.
 
+use super::acceptance::{BALANCE, Refusal, accepts_move};
 use super::crossing::crossing;
 use super::{Attempt, Outcome, Stepper, accepts};
 use crate::chains::Projected;
@@ -86,8 +87,16 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         if !accepts(error, self.settings) {
             return Outcome::Met(attempt);
         }
+        if self.field.imbalance() > BALANCE {
+            return Outcome::Refused(Refusal::Balance);
+        }
+        self.stages.remember();
         let Stages { next_q, next_qd, .. } = self.stages;
         match self.field.project(next_q, next_qd, end, self.settings) {
+            Projected::Met(_) if !accepts_move(self.moved(h), self.settings) => {
+                self.stages.recall();
+                Outcome::Refused(Refusal::Jump)
+            }
             Projected::Met(iterations) => {
                 attempt.iterations = iterations;
                 Outcome::Met(attempt)
@@ -122,12 +131,25 @@ impl<F: Field> PairStepper<'_, F> {
         self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
     }
 
+    /// The speed that errors of velocities are compared with [m/s].
+    fn speed(&self, h: f64) -> f64 {
+        let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
+        // A system at rest to roundoff has no speed to compare with.
+        fastest.max(AT_REST * self.system.extent / h)
+    }
+
+    /// The way that the projection moved the motion, in the norm of the error estimate.
+    fn moved(&self, h: f64) -> f64 {
+        let coordinates = self.system.coordinate_count().max(1) as f64;
+        let [q, qd] = self.stages.moved(&self.field).map(|sum| (sum / coordinates).sqrt());
+        let moved = (q / self.system.extent).max(qd / self.speed(h));
+        if q.is_nan() || qd.is_nan() { f64::NAN } else { moved }
+    }
+
     /// The error estimate: that of positions relative to the extent, or of velocities relative to the fastest,
     /// whichever is larger.
     fn error(&self, h: f64) -> f64 {
-        let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
-        // A system at rest to roundoff has no speed to compare with.
-        let speed = fastest.max(AT_REST * self.system.extent / h);
+        let speed = self.speed(h);
         let coarse = self.pair.coarse.as_ref().unwrap_or(&self.pair.estimate);
         let coordinates = self.system.coordinate_count().max(1) as f64;
         let estimates = [&self.pair.estimate, coarse];

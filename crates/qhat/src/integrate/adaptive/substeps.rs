@@ -1,5 +1,6 @@
 //! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
 
+use super::acceptance::{Refusal, accepts};
 use super::{Attempt, Outcome, Stepper, control};
 use crate::drift::{Drift, worst_row};
 use crate::energy;
@@ -18,17 +19,8 @@ use crate::system::System;
 /// Length of a substep, in frames, below which shortening it does not help.
 const SHORTEST: f64 = 1e-12;
 
-/// Error of an accepted substep, in tolerances. The controller aims at the tolerance itself, and a substep that is a
-/// little too long costs less than two.
-const MISSED: f64 = 3.0;
-
 /// Part of the substep by which a substep that does not meet the constraints is tried again.
 const HALF: f64 = 0.5;
-
-/// Whether a substep with this error estimate is kept; an error that is not a number is not.
-pub(crate) fn accepts(error: f64, settings: &Settings) -> bool {
-    error <= MISSED * settings.tolerance
-}
 
 /// The place that a frame has come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,12 +99,13 @@ impl<'a> Substeps<'a> {
             let across = method.across(state, self.proposed.min(longest), self.length - self.done);
             let substep = self.propose(longest, across);
             let outcome = method.attempt(state, substep.h, substep.end);
-            match self.judge(outcome, method, state)? {
+            let refusal = if let Outcome::Refused(refusal) = outcome { Some(refusal) } else { None };
+            match self.judge(outcome, method)? {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
                     self.reject(&substep, growth);
                     if self.is_too_short() {
-                        return Err(self.not_satisfied(method, state, substep.end));
+                        return Err(self.failure(method, state, substep.end, refusal));
                     }
                     method.turn_back(state);
                 }
@@ -148,13 +141,13 @@ impl<'a> Substeps<'a> {
     /// Whether an attempt is accepted.
     ///
     /// # Errors
-    /// A failure of the method; an error estimate that is not a number, which no shorter substep mends.
-    fn judge(&self, outcome: Outcome, method: &impl Stepper, state: &State) -> Result<Verdict, StepError> {
+    /// A failure of the method.
+    fn judge(&self, outcome: Outcome, method: &impl Stepper) -> Result<Verdict, StepError> {
         let attempt = match outcome {
             Outcome::Singular => return Ok(Verdict::Singular),
             Outcome::Failed(error) => return Err(error),
-            Outcome::NotMet => return Ok(Verdict::Rejected { growth: HALF }),
-            Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
+            Outcome::NotMet | Outcome::Refused(_) => return Ok(Verdict::Rejected { growth: HALF }),
+            Outcome::Met(attempt) if attempt.error.is_nan() => return Ok(Verdict::Rejected { growth: HALF }),
             Outcome::Met(attempt) => attempt,
         };
         let growth = control::growth(attempt.error, self.settings.tolerance, method.estimate_order());
@@ -204,31 +197,33 @@ impl<'a> Substeps<'a> {
         Ok(())
     }
 
-    /// The error that names the particle of the tried motion that is not finite.
-    fn not_finite(&self, method: &impl Stepper, state: &State) -> StepError {
+    /// The error after the shortest substep was not kept: it names the particle of the tried motion that is not finite,
+    /// or the row with the largest residual.
+    fn failure(&self, method: &impl Stepper, state: &State, end: f64, refusal: Option<Refusal>) -> StepError {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
-        let checked = in_dimension!(self.system.dimension, D => {
-            check_finite::<D>(self.system, state.t, &tried.q, &tried.qd)
-        });
-        // Sums of finite numbers may overflow, too; then no particle is to blame more than another.
-        let first = || self.system.particle_names.first().cloned().unwrap_or_default();
-        checked.err().unwrap_or_else(|| StepError::NotFinite { time: state.t, particle: first() })
-    }
-
-    /// The error that names the row of the tried motion with the largest residual.
-    fn not_satisfied(&self, method: &impl Stepper, state: &State, end: f64) -> StepError {
-        let mut tried = state.clone();
-        method.write_tried(&mut tried);
-        in_dimension!(self.system.dimension, D => {
-            let mut rows = self.system.empty_rows();
-            self.system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
-            let (row, _) = worst_row(self.system, &rows.C);
-            match rows.C.get(row) {
-                Some(&residual) => {
-                    StepError::NotSatisfied { time: state.t, row: self.system.row_names[row].clone(), residual }
+        let (system, time) = (self.system, state.t);
+        in_dimension!(system.dimension, D => {
+            if let Err(error) = check_finite::<D>(system, time, &tried.q, &tried.qd) {
+                return error;
+            }
+            let mut rows = system.empty_rows();
+            system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
+            let (worst, relative) = worst_row(system, &rows.C);
+            let row = || system.row_names[worst].clone();
+            match (refusal, rows.C.get(worst)) {
+                // Sums of finite numbers may overflow; then no particle is to blame more than another.
+                (_, None) => {
+                    let particle = system.particle_names.first().cloned().unwrap_or_default();
+                    StepError::NotFinite { time, particle }
                 }
-                None => self.not_finite(method, state),
+                (Some(Refusal::Jump), Some(&residual)) => StepError::Jumps { time, row: row(), residual },
+                (Some(Refusal::Balance), Some(_)) => StepError::OutOfBalance { time },
+                (None, Some(_)) if relative.is_infinite() => {
+                    let particle = system.particle_names.first().cloned().unwrap_or_default();
+                    StepError::NotFinite { time, particle }
+                }
+                (None, Some(&residual)) => StepError::NotSatisfied { time, row: row(), residual },
             }
         })
     }

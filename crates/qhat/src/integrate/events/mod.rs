@@ -201,6 +201,10 @@ impl<const D: usize> Stepper for EventStepper<'_, D> {
         slips.max(SLOWEST * self.frame).min(self.run.longest(state))
     }
 
+    fn across(&mut self, state: &State, h: f64, remaining: f64) -> Option<f64> {
+        self.run.across(state, h, remaining)
+    }
+
     fn attempt(&mut self, state: &State, h: f64, _: f64) -> Outcome {
         if let Some(error) = self.failure.take() {
             return Outcome::Failed(error);

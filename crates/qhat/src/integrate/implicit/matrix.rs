@@ -24,6 +24,9 @@ use crate::linalg::block::{diagonal, store};
 use crate::point::Motion;
 use crate::system::System;
 
+/// E of a row that does not act: whatever its C, its multiplier stays zero to roundoff.
+const YIELDING: f64 = 1e200;
+
 /// The motion and the multipliers with which the matrix is assembled.
 #[derive(Clone, Copy)]
 pub(super) struct Linearization<'a, const D: usize> {
@@ -34,6 +37,8 @@ pub(super) struct Linearization<'a, const D: usize> {
     /// μ = h_e² λ.
     pub(super) mu: &'a [f64],
     pub(super) h_e: f64,
+    /// Rows that follow from others: they do not act.
+    pub(super) dependent: &'a [u32],
 }
 
 /// The matrix by blocks, and its factor.
@@ -101,7 +106,7 @@ impl Matrix {
     }
 
     fn assemble<const D: usize>(&mut self, at: &Linearization<'_, D>, signed: bool) {
-        let Linearization { system, rows, h_e, .. } = *at;
+        let Linearization { system, rows, h_e, dependent, .. } = *at;
         for (node, &mass) in self.mass.iter().enumerate() {
             store(&mut self.diagonal, node, diagonal::<D>(mass));
         }
@@ -110,6 +115,9 @@ impl Matrix {
         self.retreat.fill(0.0);
         for (softness, row) in self.softness.iter_mut().zip(&system.softness) {
             *softness = row.compliance / (h_e * h_e * row.lag(h_e));
+        }
+        for &row in dependent {
+            self.softness[row as usize] = YIELDING;
         }
         self.add_geometric_stiffness(at, signed);
         self.add_tangents(at, signed);

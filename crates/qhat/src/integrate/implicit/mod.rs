@@ -78,6 +78,7 @@ pub(crate) fn frame<const D: usize>(
     let (system, length) = (frame.system, frame.length);
     let mut scratch = frame.workspace.implicit.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
     let before = frame.factorizations();
+    frame.workspace.set_modes(system, state);
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
         let equation = frame.workspace.solve::<D>(system, state, &Feedback::NONE);

@@ -127,7 +127,8 @@ impl Newton {
     pub(super) fn factor<const D: usize>(&mut self, base: &Base, tried: &Tried<'_>) -> bool {
         let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: base.end };
         let (rows, mu, h_e) = (&tried.equation.rows, &self.mu, base.h_e);
-        self.matrix.factor(&Linearization { system: tried.system, rows, motion, mu, h_e })
+        let dependent = tried.equation.rank.as_ref().map_or(&[][..], |rank| &rank.dependent);
+        self.matrix.factor(&Linearization { system: tried.system, rows, motion, mu, h_e, dependent })
     }
 
     /// q ← q + Δq, μ ← μ + Δμ.

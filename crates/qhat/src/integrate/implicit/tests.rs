@@ -138,7 +138,7 @@ fn check(what: &str, system: &System, q: &[f64]) {
     let expected = solve_dense(dense, b.clone());
 
     let mut matrix = Matrix::new(system);
-    assert!(matrix.factor(&Linearization { system, rows: &rows, motion, mu: &mu, h_e: H_E }), "{what}");
+    assert!(matrix.factor(&Linearization { system, rows: &rows, motion, mu: &mu, h_e: H_E, dependent: &[] }), "{what}");
     let mut r: Vec<f64> = matrix.graph.particle.iter().flat_map(|id| b[id.0 * D..][..D].to_vec()).collect();
     let mut s = b[n..].to_vec();
     matrix.solve::<D>(system, &mut r, &mut s);
@@ -211,7 +211,7 @@ fn a_compressed_chain_is_mended() {
     system.evaluate_rows(motion, &mut rows);
     let mu = vec![5.0; system.row_count()];
     let mut matrix = Matrix::new(&system);
-    assert!(matrix.factor(&Linearization { system: &system, rows: &rows, motion, mu: &mu, h_e: H_E }));
+    assert!(matrix.factor(&Linearization { system: &system, rows: &rows, motion, mu: &mu, h_e: H_E, dependent: &[] }));
     let (mut r, mut s) = (vec![1.0; matrix.graph.particle.len() * D], vec![0.0; system.row_count()]);
     let force = r.clone();
     matrix.solve::<D>(&system, &mut r, &mut s);

@@ -133,3 +133,28 @@ impl<F: Field> WithSimd for Squares<'_, F> {
         sums.map(Wide::stored).map(F8::sum)
     }
 }
+
+/// Σ |Δ|² of positions and of velocities from the motion that was kept to the one that is tried, over the coordinates
+/// that the field counts.
+pub(super) struct Moved<'a, F> {
+    pub(super) field: &'a F,
+    pub(super) stages: &'a Stages,
+}
+
+impl<F: Field> WithSimd for Moved<'_, F> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+        let Stages { next_q, next_qd, stage_q, stage_qd, .. } = self.stages;
+        let mut sums = [Wide::splat(simd, 0.0); 2];
+        for k in 0..next_q.len() {
+            let counted = Wide::load(simd, &self.field.counted(k));
+            for (sum, [to, from]) in sums.iter_mut().zip([[&next_q[k], &stage_q[k]], [&next_qd[k], &stage_qd[k]]]) {
+                let moved = Wide::load(simd, to) - Wide::load(simd, from);
+                *sum = *sum + counted * (moved * moved);
+            }
+        }
+        sums.map(Wide::stored).map(F8::sum)
+    }
+}

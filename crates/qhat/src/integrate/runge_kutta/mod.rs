@@ -75,6 +75,24 @@ impl Stages {
         self.is_first_known = false;
     }
 
+    /// Keeps the motion that is tried, in the arrays of the stages.
+    pub(super) fn remember(&mut self) {
+        self.stage_q.copy_from_slice(&self.next_q);
+        self.stage_qd.copy_from_slice(&self.next_qd);
+    }
+
+    /// Tries the motion that was kept.
+    pub(super) fn recall(&mut self) {
+        self.next_q.copy_from_slice(&self.stage_q);
+        self.next_qd.copy_from_slice(&self.stage_qd);
+    }
+
+    /// Σ |Δ|² of positions and of velocities between the motion that was kept and the one that is tried, over the
+    /// coordinates that the field counts.
+    pub(super) fn moved<F: Field>(&self, field: &F) -> [f64; 2] {
+        vector_unit().dispatch(combine::Moved { field, stages: self })
+    }
+
     /// Whether numbers lost their range within the substep tried last, although they were in range at its start: then a
     /// shorter substep is worth trying.
     pub(super) fn overflow(&self) -> bool {
