@@ -13,12 +13,20 @@ use super::memory::FactorMemory;
 use crate::linalg::{Factor, SmallPivots};
 use crate::structure::MatrixStructure;
 
-/// Pivot of M up to which roundoff may have taken it: a few hundred roundings of the unit diagonal.
-const ROUNDOFF: f64 = 1e-13;
+/// Pivot of M up to which roundoff may have taken it, a few hundred roundings of the unit diagonal, and the pivot in its
+/// place. Refinement shrinks the error by this number over the true pivot each pass, and roundoff is amplified by its
+/// inverse.
+const TAKEN: [f64; 2] = [1e-13, 1e-8];
 
-/// The pivot in place of one that roundoff has taken. Refinement shrinks the error by this number over the true pivot
-/// each pass, and roundoff is amplified by its inverse.
-const INSTEAD: f64 = 1e-8;
+/// The same in a matrix with hubs. Before a hub is eliminated, its share is missing in a pivot, which may then be
+/// anything, while the matrix is regular. So there is more to gain by refinement.
+const WITHOUT_HUB: [f64; 2] = [1e-10, 1e-6];
+
+/// Pivot in a matrix with hubs below which every solution is refined.
+const SMALL_WITHOUT_HUB: f64 = 1e-3;
+
+/// δ of a least-squares solution, far below the eigenvalues of rows that agree.
+const SHIFT: f64 = 1e-8;
 
 /// Relative residual above which a solution is refined. Under a load of a billion beads x is a billion times b, and the
 /// rounding of x alone gives a residual of 1e-7.
@@ -27,8 +35,8 @@ const ACCEPTED_RESIDUAL: f64 = 1e-6;
 /// Relative residual at which refinement stops: a few times roundoff.
 const REFINED: f64 = 1e-14;
 
-/// Passes of refinement: it takes two to five where it converges.
-const PASSES: usize = 10;
+/// Passes of refinement: it takes two to five where no pivot was replaced by one much larger.
+const PASSES: usize = 30;
 
 /// (A + ε I), scaled and factored. Inside, rows are in the order of elimination.
 #[derive(Clone, Debug)]
@@ -107,9 +115,11 @@ impl MultiplierSolver {
         self.scale_rows(matrix, A, epsilon, inactive, dependent);
         self.factorizations += 1;
         let mut met = Vec::new();
-        let mut small = SmallPivots { shift: 0.0, below: ROUNDOFF, instead: Some(INSTEAD), met: &mut met };
+        let [below, instead] = if matrix.on_hubs.is_empty() { TAKEN } else { WITHOUT_HUB };
+        let mut small = SmallPivots { shift: 0.0, below, instead: Some(instead), met: &mut met };
         self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
-        (self.is_perturbed, self.is_refined) = (!met.is_empty(), true);
+        let is_poor = !matrix.on_hubs.is_empty() && self.smallest < SMALL_WITHOUT_HUB;
+        (self.is_perturbed, self.is_refined) = (!met.is_empty() || is_poor, true);
     }
 
     /// Factors M + δ I over all active rows.
@@ -117,7 +127,8 @@ impl MultiplierSolver {
         self.scale_rows(matrix, A, 0.0, inactive, &[]);
         self.factorizations += 1;
         let mut met = Vec::new();
-        let mut small = SmallPivots { shift: INSTEAD, below: ROUNDOFF, instead: Some(INSTEAD), met: &mut met };
+        let [below, instead] = TAKEN;
+        let mut small = SmallPivots { shift: SHIFT, below, instead: Some(instead), met: &mut met };
         self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
         // A solution of a shifted matrix does not satisfy the equation, and is not to be refined.
         self.is_refined = false;

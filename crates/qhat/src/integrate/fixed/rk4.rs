@@ -15,6 +15,7 @@ pub(crate) static RK4: Tableau =
 pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> StepWork {
     let (system, h) = (frame.system, frame.length);
     let workspace = &mut *frame.workspace;
+    workspace.set_modes(system, state);
     let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state);
     let mut stages = std::mem::take(&mut workspace.stages);
     let mut field = GeneralField::<D> { system, workspace, feedback: system.feedback, is_factored };
