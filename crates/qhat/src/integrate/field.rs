@@ -173,7 +173,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
     }
 
     fn imbalance(&mut self) -> f64 {
-        self.workspace.equation.solver.take_imbalance()
+        std::mem::take(&mut self.workspace.equation.imbalance)
     }
 
     fn time_to_singular(&mut self, q: &[F8], qd: &[F8], t: f64, h: f64) -> Option<f64> {

@@ -14,6 +14,16 @@ use crate::state::Rank;
 use crate::system::System;
 use std::sync::Arc;
 
+/// Growth from the right-hand side to λ, rows scaled, above which λ is refined by the q̈ that it gives: a crossed
+/// cantilever of ten bays, with a growth of a hundred, loses two of sixteen digits of its forces.
+const BALANCED: f64 = 10.0;
+
+/// Change of λ, relative, at which its refinement ends: the next would be smaller by as much again.
+const SETTLED: f64 = 1e-11;
+
+/// Passes of that refinement. A cantilever of 1000 bays takes two.
+const PASSES: usize = 3;
+
 /// Smallest pivot with which all rows are independent without a question.
 const INDEPENDENT: f64 = 1e-2;
 
@@ -46,11 +56,45 @@ impl Equation {
             self.factor::<D>(system, feedback.diagonal_drag); // A + ε I
         }
         self.solve_multipliers::<D>(system); // (A + ε I) λ = b, and F
+        self.imbalance = self.imbalance.max(self.solver.imbalance());
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat); // Q̂ = s Jᵀ λ
         self.report_soft_rows(system); // λ of soft rows
         reaction::accelerations::<D>(W, &self.Q, &self.Q_hat, &mut self.qdd); // q̈ = W (Q + Q̂)
         if !self.sliding.is_empty() {
             reaction::add_accelerations::<D>(W, &self.friction.force, &mut self.qdd); // q̈ += W F
+        } else if self.solver.growth() > BALANCED {
+            self.balance::<D>(system, s);
+        }
+    }
+
+    /// Refines λ by the q̈ that it gives.
+    ///
+    /// ```text
+    /// A δλ = −γ − ks C − kd Ċ − J q̈,   λ += δλ
+    /// ```
+    ///
+    /// A rounding e of the forces Q + Q̂ changes the right-hand side by J W e, and Jᵀ δλ by the part of e that the
+    /// constraints take up, which is no larger than e. A rounding of the right-hand side itself would be divided by the
+    /// sine of the least independent combination of rows, which is 1e-5 in a cantilever of 200 bays.
+    fn balance<const D: usize>(&mut self, system: &System, s: f64) {
+        let W = &system.inverse_mass;
+        let size = self.solver.largest_x();
+        for _ in 0..PASSES {
+            self.rows.J.multiply::<D>(&self.qdd, &mut self.balance.residual);
+            for (row, residual) in self.balance.residual.iter_mut().enumerate() {
+                *residual = self.b.bias[row] + self.b.stiffness[row] + self.b.damping[row] - *residual;
+            }
+            self.solver.solve(&system.matrix, &self.balance.residual, &mut self.balance.change);
+            for (lambda, change) in self.lambda.iter_mut().zip(&self.balance.change) {
+                *lambda += change;
+            }
+            reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat);
+            reaction::accelerations::<D>(W, &self.Q, &self.Q_hat, &mut self.qdd);
+            // A change that is not a number ends the passes, too.
+            let is_changed = self.solver.largest_x() > SETTLED * size;
+            if !is_changed {
+                break;
+            }
         }
     }
 

@@ -57,8 +57,10 @@ pub(crate) struct MultiplierSolver {
     /// The state of the A that is factored.
     pub(crate) memory: FactorMemory,
     pub(crate) factorizations: usize,
-    /// The largest residual of a solution, relative to its right-hand side, since it was last taken.
+    /// The residual of the last solution, relative to its right-hand side.
     imbalance: f64,
+    /// max |x| over max |S b| of the last solution.
+    growth: f64,
     /// x, r = b − M x, and S b.
     x: Vec<f64>,
     r: Vec<f64>,
@@ -79,6 +81,7 @@ impl MultiplierSolver {
             memory: FactorMemory::default(),
             factorizations: 0,
             imbalance: 0.0,
+            growth: 0.0,
             x: vec![0.0; m],
             r: vec![0.0; m],
             b: vec![0.0; m],
@@ -134,9 +137,9 @@ impl MultiplierSolver {
         self.is_refined = false;
     }
 
-    /// The largest residual of a solution, relative to its right-hand side, since the last call.
-    pub(crate) fn take_imbalance(&mut self) -> f64 {
-        std::mem::take(&mut self.imbalance)
+    /// The residual of the last solution, relative to its right-hand side.
+    pub(crate) fn imbalance(&self) -> f64 {
+        self.imbalance
     }
 
     /// The smallest pivot of the factor at hand.
@@ -230,9 +233,20 @@ impl MultiplierSolver {
         if self.is_refined && size.is_finite() && !(!self.is_perturbed && largest(&self.r) <= ACCEPTED_RESIDUAL * size)
         {
             self.refine(matrix, size);
-            self.imbalance = self.imbalance.max(largest(&self.r) / size);
         }
+        (self.growth, self.imbalance) =
+            if size > 0.0 { (largest(&self.x) / size, largest(&self.r) / size) } else { (0.0, 0.0) };
         self.scale_out(matrix, lambda);
+    }
+
+    /// max |x| of the last solution.
+    pub(crate) fn largest_x(&self) -> f64 {
+        largest(&self.x)
+    }
+
+    /// The growth from the right-hand side to the last solution, rows scaled.
+    pub(crate) fn growth(&self) -> f64 {
+        self.growth
     }
 
     /// x ← x + M⁻¹ (b − M x), as long as the residual halves.

@@ -50,6 +50,10 @@ pub(crate) struct Equation {
     /// The sliding contacts, with their slips in the substep being tried.
     pub(crate) sliding: Vec<Sliding>,
     pub(crate) friction: Friction,
+    /// The largest residual of A λ = b, relative to b, since it was last taken (`integrate/adaptive/acceptance.rs`).
+    pub(crate) imbalance: f64,
+    /// The refinement of λ by q̈.
+    balance: Balance,
     /// The rows that follow from others, with the rows active that were when they were found.
     pub(crate) rank: Option<Arc<Rank>>,
     /// W Jᵀλ, or W (Jᵀλ + F), as written last (`pushes.rs`): d·n numbers; empty until then.
@@ -61,6 +65,13 @@ pub(crate) struct Equation {
 pub(crate) struct Gaps {
     pub(crate) C: Vec<f64>,
     pub(crate) Cd: Vec<f64>,
+}
+
+/// The residual of C̈ in every row, and the change of λ that removes it; m numbers each.
+#[derive(Clone, Debug)]
+struct Balance {
+    residual: Vec<f64>,
+    change: Vec<f64>,
 }
 
 impl Equation {
@@ -80,6 +91,8 @@ impl Equation {
             gaps: Gaps::default(),
             sliding: Vec::new(),
             friction: Friction::default(),
+            balance: Balance { residual: vec![0.0; m], change: vec![0.0; m] },
+            imbalance: 0.0,
             rank: None,
             W_JT_lambda: Vec::new(),
         }
