@@ -51,7 +51,8 @@ impl Workspace {
         &self.equation
     }
 
-    /// Solves the equation at a state; a factor of A that is at hand is kept.
+    /// Solves the equation at a state, for a reader: λ and Q̂ contain the friction of sliding contacts. A factor of A
+    /// that is at hand is kept.
     pub(crate) fn solve<const D: usize>(&mut self, system: &System, state: &State, feedback: &Feedback) -> &Equation {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         self.set_modes(system, state);
@@ -60,6 +61,7 @@ impl Workspace {
             self.equation.solver.memory.ask_again();
         }
         self.equation.solve(system, motion, feedback, is_factored, SolveFor::LeastNorm);
+        self.equation.show_friction();
         self.equation.solver.memory.forget();
         if feedback.diagonal_drag == 0.0 {
             self.note_factored(state);

@@ -116,12 +116,17 @@ impl<F: Field> PairStepper<'_, F> {
         self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
     }
 
+    /// The speed to which errors of velocities are relative [m/s].
+    pub(crate) fn speed(&self, h: f64) -> f64 {
+        let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
+        // A system at rest to roundoff has no speed to compare with.
+        fastest.max(AT_REST * self.system.extent / h)
+    }
+
     /// The error estimate: that of positions relative to the extent, or of velocities relative to the fastest,
     /// whichever is larger.
     fn error(&self, h: f64) -> f64 {
-        let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
-        // A system at rest to roundoff has no speed to compare with.
-        let speed = fastest.max(AT_REST * self.system.extent / h);
+        let speed = self.speed(h);
         let coarse = self.pair.coarse.as_ref().unwrap_or(&self.pair.estimate);
         let coordinates = self.system.coordinate_count().max(1) as f64;
         let estimates = [&self.pair.estimate, coarse];
