@@ -126,8 +126,8 @@ fn pivot<const D: usize>(
     Ok(())
 }
 
-/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand. The rest of active rows, evaluated by J W, is solved
-/// for once more: beside a load of a billion beads the factor alone leaves too much of it.
+/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand. What the factor leaves of active rows, evaluated by
+/// J W, is solved for once more: beside a load of a billion beads it is too much.
 pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
     equation.factor::<D>(system, 0.0);

@@ -55,8 +55,8 @@ impl NearestStart<'_> {
         self.depth(modes) > self.tolerance
     }
 
-    /// Moves q, which satisfies the equations and violates contacts, near the nearest to `written` that satisfies equations and contacts. Returns the modes of contacts
-    /// there, closed where they hold q; the equations are met to the tolerance once the active rows have been
+    /// Moves q, which satisfies the equations and violates contacts, near the nearest to `written` that satisfies
+    /// both. Returns the modes of contacts there, closed where they hold q; the equations are met to the tolerance once the active rows have been
     /// projected.
     pub(crate) fn positions<const D: usize>(
         &mut self,
@@ -104,8 +104,8 @@ impl NearestStart<'_> {
         Ok(modes)
     }
 
-    /// One round, for J (q_i − q⁰). Where linearised rows and contacts leave nothing, as far from q⁰, a part of C is taken
-    /// out: contacts are satisfied where the rounds begin, so there is such a part. Returns the part.
+    /// One round, for J (q_i − q⁰). Where linearised rows and contacts leave nothing, as far from q⁰, a part of C is
+    /// taken out: contacts are satisfied where the rounds begin, so there is such a part. Returns the part.
     fn settle<const D: usize>(
         &mut self,
         modes: &mut Modes,

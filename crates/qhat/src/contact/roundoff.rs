@@ -4,12 +4,12 @@ use crate::multiplier::Equation;
 use crate::point::norm;
 use crate::system::System;
 
-/// Part of the forces on the particles of a contact below which a negative force counts as roundoff: solutions have some
-/// 1e-12 of it. The forces elsewhere do not matter, so a bead may lie on a drum beside a load of a billion beads.
+/// Part of the forces on the particles of a contact below which a negative force counts as roundoff: solutions have
+/// some 1e-12 of it. The forces elsewhere do not matter, so a bead may lie on a drum beside a load of a billion beads.
 const ROUNDOFF: f64 = 1e-10;
 
-/// Part of the accelerations by those forces below which an acceleration counts as roundoff. A chain of beads moves with
-/// its load, so the least acceleration that matters is this times the ratio of the masses.
+/// Part of the accelerations by those forces below which an acceleration counts as roundoff. A chain of beads moves
+/// with its load, so the least acceleration that matters is this times the ratio of the masses.
 const NO_ACCELERATION: f64 = 1e-12;
 
 /// What roundoff leaves in the normal row of a contact.

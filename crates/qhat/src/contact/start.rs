@@ -7,7 +7,8 @@ use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// The contact that is violated most: the index of its constraint, and −C [m]. `None` where every contact is within `TOUCH_DISTANCE` × `tolerance` of its row's scale.
+/// The contact that is violated most: the index of its constraint, and −C [m]. `None` where every contact is
+/// within `TOUCH_DISTANCE` × `tolerance` of its row's scale.
 pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance: f64) -> Option<(usize, f64)> {
     if system.contacts.list.is_empty() {
         return None;

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The friction F of sliding contacts follows λ and is added to both: −J W F to the right-hand side, W F to q̈
-//! (`friction.rs`). Whoever reads an equation sees F as multipliers of tangential rows and as a part of Q̂. A soft row is inert: its force is part of Q, and λ only reports it.
+//! (`friction.rs`). Readers see F as multipliers of tangential rows and as a part of Q̂. A soft row is inert: its force
+//! is part of Q, and λ only reports it.
 
 use super::{Equation, SolveFor, reaction};
 use crate::point::Motion;
