@@ -56,8 +56,8 @@ impl NearestStart<'_> {
     }
 
     /// Moves q, which satisfies the equations and violates contacts, near the nearest to `written` that satisfies
-    /// both. Returns the modes of contacts there, closed where they hold q; the equations are met to the tolerance once the active rows have been
-    /// projected.
+    /// both. Returns the modes of contacts there, closed where they hold q. The equations are met to the tolerance once
+    /// the active rows have been projected.
     pub(crate) fn positions<const D: usize>(
         &mut self,
         state: &Modes,
