@@ -28,40 +28,66 @@ impl Mode {
 
 /// The slip of a sliding contact, in its tangential rows; the second component is zero in the plane.
 ///
-/// In [`Modes`] the direction is that at the start of the next substep. Within a substep it may follow the slip; then
-/// `at_start` and `follows` say from where and whether.
+/// In [`Modes`] the direction is that at the start of the next substep; within a substep `course` says how it goes on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slip {
     /// d, a unit vector. Friction acts along −d.
     pub(crate) direction: [f64; 2],
     /// d at the start of the substep.
     pub(crate) at_start: [f64; 2],
-    /// Whether d is updated from the slip within the substep; `integrate/events/slip.rs` decides it.
-    pub(crate) follows: bool,
+    /// d within the substep; `integrate/events/slip.rs` decides it.
+    pub(crate) course: Course,
+    /// The largest part of the slip across d within a substep in which d turns [m/s].
+    pub(crate) across: f64,
 }
 
-/// Slips are equal if their directions are: the other two fields matter only within a substep.
+/// The direction of friction within a substep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Course {
+    /// The same all the time.
+    Kept,
+    /// That of the slip at every stage.
+    Follows,
+    /// It turns from one direction at `start` \[s\] to another at `start + h`.
+    Turns { from: [f64; 2], to: [f64; 2], start: f64, h: f64 },
+}
+
+/// Slips are equal if their directions are: the other fields matter only within a substep.
 impl PartialEq for Slip {
     fn eq(&self, other: &Self) -> bool {
         self.direction == other.direction
     }
 }
 
+/// A vector of length 1, `None` of a zero.
+fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
+    let size = (v[0] * v[0] + v[1] * v[1]).sqrt();
+    (size > 0.0).then(|| v.map(|component| component / size))
+}
+
 impl Slip {
     /// A slip in a direction that it keeps until told otherwise.
     pub(crate) fn along(direction: [f64; 2]) -> Self {
-        Slip { direction, at_start: direction, follows: false }
+        Slip { direction, at_start: direction, course: Course::Kept, across: 0.0 }
     }
 
-    /// Updates d from the slip velocity [m/s], if d follows it.
-    pub(crate) fn follow(&mut self, velocity: [f64; 2]) {
-        if self.follows {
-            let speed = (velocity[0] * velocity[0] + velocity[1] * velocity[1]).sqrt();
-            let along = velocity[0] * self.at_start[0] + velocity[1] * self.at_start[1];
-            // A slip more than 60° away from its start has stopped on the way: the event is found with the old
-            // direction.
-            let is_same_slip = speed > 0.0 && along > 0.5 * speed;
-            self.direction = if is_same_slip { velocity.map(|component| component / speed) } else { self.at_start };
+    /// Updates d at a stage at the time t [s] with the slip velocity v [m/s].
+    pub(crate) fn go_on(&mut self, v: [f64; 2], t: f64) {
+        match self.course {
+            Course::Kept => {}
+            Course::Follows => {
+                // A slip more than 60° away from its start has stopped on the way: the event is found with the old
+                // direction.
+                let is_same_slip = |d: &[f64; 2]| d[0] * self.at_start[0] + d[1] * self.at_start[1] > 0.5;
+                self.direction = unit(v).filter(is_same_slip).unwrap_or(self.at_start);
+            }
+            Course::Turns { from, to, start, h } => {
+                let part = ((t - start) / h).clamp(0.0, 1.0);
+                let between = [0, 1].map(|k| (1.0 - part) * from[k] + part * to[k]);
+                self.direction = unit(between).unwrap_or(to);
+                let across = v[0] * self.direction[1] - v[1] * self.direction[0];
+                self.across = self.across.max(across.abs());
+            }
         }
     }
 

@@ -218,6 +218,13 @@ pub enum Warning {
         /// t where it took over \[s\].
         time: f64,
     },
+    /// Contacts that share a particle were struck at once, and share the blow as Newton's law of impact has it.
+    SharedImpact {
+        /// t of the impact \[s\].
+        time: f64,
+        /// Two of the constraints.
+        constraints: [String; 2],
+    },
     /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
     BudgetSpent {
         /// t of the end of the step \[s\].
@@ -254,6 +261,11 @@ impl fmt::Display for Warning {
                 f,
                 "rattle could not meet the constraints at t = {time:.4} s with a substep of any length, so dopri5 \
                  finished the frame. If this comes back, use dop853"
+            ),
+            Warning::SharedImpact { time, constraints: [one, other] } => write!(
+                f,
+                "`{one}` and `{other}` were struck at once at t = {time:.4} s, so they share the blow. Where it should \
+                 pass from one to the next, as in Newton's cradle, leave a gap of 1e-6 m between them"
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,

@@ -45,9 +45,9 @@ pub struct Terms {
     pub rhs_damping: Vec<f64>,
     /// b, the sum of the four, m [C/s²].
     pub right_hand_side: Vec<f64>,
-    /// λ, m [J/C].
+    /// λ, m [J/C]; in the tangential rows of a sliding contact −μ λ_n d, d the direction of the slip.
     pub multipliers: Vec<f64>,
-    /// Q̂ = s Jᵀλ over the rigid rows, as applied, N \[N\].
+    /// Q̂ = s Jᵀλ over the rigid rows, as applied, friction included, N \[N\].
     pub constraint_forces: Vec<f64>,
     /// q̈ = W (Q + Q̂), N [m/s²].
     pub accelerations: Vec<f64>,

@@ -246,3 +246,44 @@ fn long_a_bridge_of_ropes_and_struts_comes_to_rest() {
     let fastest = simulation.state().velocities().iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     assert!(fastest < 1e-6, "{fastest:e} m/s");
 }
+
+/// Three balls in a line on ice, the first of them thrown at the other two.
+fn row_of_balls(gap: f64) -> Simulation {
+    let mut builder = System::builder(Dimension::Two);
+    let places = [0.0, 0.2, 0.3 + gap];
+    let balls: Vec<_> = places
+        .iter()
+        .enumerate()
+        .map(|(i, &x)| {
+            let speed = if i == 0 { 1.0 } else { 0.0 };
+            builder.particle(Particle::at(format!("ball{i}"), [x, 0.0]).with_velocity([speed, 0.0]))
+        })
+        .collect();
+    for (name, pair) in ["first", "second"].iter().zip(balls.windows(2)) {
+        builder.constraint(*name, Limits { restitution: 1.0, ..Limits::between(pair[0], pair[1], 0.1, 10.0) });
+    }
+    start(builder)
+}
+
+/// Balls that touch share the blow, and a warning says so once; balls with a gap pass it on.
+#[test]
+fn a_blow_that_is_shared_is_told() {
+    let shared = |reports: &[StepReport]| -> Vec<String> {
+        let warnings = reports.iter().flat_map(|report| &report.warnings);
+        warnings.filter(|it| matches!(it, qhat::Warning::SharedImpact { .. })).map(ToString::to_string).collect()
+    };
+    let mut simulation = row_of_balls(0.0);
+    let told = shared(&run(&mut simulation, 0.5));
+    assert_eq!(told.len(), 1);
+    assert!(told[0].starts_with("`first` and `second` were struck at once at t = 0.1000 s"), "{}", told[0]);
+    // One ball against two: momentum and energy are those of masses of 1 and 2.
+    let v: Vec<f64> = simulation.state().velocities().iter().step_by(2).copied().collect();
+    assert!(
+        [-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0].iter().zip(&v).all(|(expected, v)| (v - expected).abs() < 1e-12),
+        "{v:?}"
+    );
+    let mut simulation = row_of_balls(1e-6);
+    assert_eq!(shared(&run(&mut simulation, 0.5)), [""; 0]);
+    let v: Vec<f64> = simulation.state().velocities().iter().step_by(2).copied().collect();
+    assert!([0.0, 0.0, 1.0].iter().zip(&v).all(|(expected, v)| (v - expected).abs() < 1e-12), "{v:?}");
+}

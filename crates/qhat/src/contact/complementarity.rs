@@ -17,15 +17,16 @@
 
 use super::SAME_WAY;
 use super::cones::propose;
+use super::roundoff::Roundoff;
 use crate::modes::{Mode, Modes, Slip};
 use crate::multiplier::Equation;
 use crate::point::largest;
 use crate::structure::Contact;
 use crate::system::System;
 
-/// Part of the largest number of its kind below which a negative force or gap counts as roundoff: solutions have some
-/// 1e-12 of it.
-const ROUNDOFF: f64 = 1e-10;
+/// Rest of the active rows, relative to the largest right-hand side, that is not solved for again: what a factor leaves
+/// where nothing is ill-conditioned is 1e-15.
+const REFINED: f64 = 1e-13;
 
 /// Passes for each touching contact, and for four more: problems that end at all end in far fewer.
 const PASSES: usize = 8;
@@ -43,13 +44,20 @@ pub(crate) struct Touching {
     pub(crate) slip: Option<[f64; 2]>,
     /// Whether it may stick: an impulse may stop a slip, a force takes time to.
     pub(crate) may_stick: bool,
+    /// Whether its friction acts.
+    pub(crate) is_rough: bool,
 }
 
 impl Touching {
+    /// A contact without its friction.
+    pub(crate) fn smooth(contact: usize) -> Self {
+        Touching { contact, slip: None, may_stick: false, is_rough: false }
+    }
+
     /// The mode of this contact if it closes now.
-    pub(crate) fn closed(&self, system: &System) -> Mode {
+    pub(crate) fn closed(&self) -> Mode {
         match self.slip {
-            _ if system.contacts.list[self.contact].tangents.is_empty() => Mode::Smooth,
+            _ if !self.is_rough => Mode::Smooth,
             Some(direction) => Mode::sliding(direction),
             None => Mode::Sticking,
         }
@@ -119,23 +127,39 @@ fn pivot<const D: usize>(
     Ok(())
 }
 
-/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand.
+/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand. What the factor leaves of active rows, evaluated by
+/// J W, is solved for once more: beside a load of a billion beads it is too much.
 pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
     equation.factor::<D>(system, 0.0);
     equation.solve_multipliers::<D>(system);
     equation.write_W_JT_lambda_F::<D>(system);
+    let rest = |equation: &Equation| -> Vec<f64> {
+        let is_left_out = |row: usize| equation.is_inactive(row) || !system.is_rigid(row);
+        (0..system.row_count()).map(|row| if is_left_out(row) { 0.0 } else { -w::<D>(equation, row) }).collect()
+    };
+    let before = rest(equation);
+    if largest(&before) <= REFINED * largest(&equation.b.sum) {
+        return;
+    }
+    let (b, lambda) = (std::mem::replace(&mut equation.b.sum, before.clone()), equation.lambda.clone());
+    let force = equation.friction.force.clone();
+    equation.solve_multipliers::<D>(system);
+    equation.lambda.iter_mut().zip(&lambda).for_each(|(change, lambda)| *change += lambda);
+    equation.friction.force.iter_mut().zip(&force).for_each(|(change, force)| *change += force);
+    equation.b.sum = b;
+    equation.write_W_JT_lambda_F::<D>(system);
+    let after = largest(&rest(equation));
+    if after.is_nan() || after >= largest(&before) {
+        equation.lambda = lambda;
+        equation.friction.force = force;
+        equation.write_W_JT_lambda_F::<D>(system);
+    }
 }
 
 /// w = J W (Jᵀλ + F) − b of one row.
 pub(super) fn w<const D: usize>(equation: &Equation, row: usize) -> f64 {
     equation.J_W_JT_lambda::<D>(row) - equation.b.sum[row]
-}
-
-/// |w| below which it is roundoff.
-fn small_gap(equation: &Equation, system: &System, touching: &[Touching]) -> f64 {
-    let rows = touching.iter().map(|touching| system.contacts.list[touching.contact].normal);
-    ROUNDOFF * rows.map(|row| equation.b.sum[row].abs()).fold(0.0, f64::max)
 }
 
 /// Every contact that contradicts its mode, with the mode that it changes to.
@@ -146,31 +170,31 @@ fn contradictions<const D: usize>(
     touching: &[Touching],
 ) -> Vec<(usize, Mode)> {
     let lambda = &equation.lambda;
-    let small_force = ROUNDOFF * largest(lambda);
-    let small_gap = small_gap(equation, system, touching);
+    let forces = Roundoff::forces::<D>(equation, system);
     let w = |row: usize| w::<D>(equation, row);
     let mut changes = Vec::new();
     for touching in touching {
         let k = touching.contact;
         let Contact { normal, tangents, friction, .. } = &system.contacts.list[k];
+        let small = Roundoff::of::<D>(equation, system, *normal, &forces);
         let changed = match modes.contacts[k] {
             // w_n < 0: the gap would close.
-            Mode::Open if w(*normal) < -small_gap => Some(touching.closed(system)),
+            Mode::Open if w(*normal) < -small.w => Some(touching.closed()),
             Mode::Open => None,
             // λ_n < 0: the contact would pull.
-            _ if lambda[*normal] < -small_force => Some(Mode::Open),
+            _ if lambda[*normal] < -small.force => Some(Mode::Open),
             // |λ_t| > μ λ_n: the contact slips, against the force that held it.
             Mode::Sticking => {
                 let lambda_t = along(tangents.clone().map(|row| lambda[row]));
                 let size = size(lambda_t);
-                (size > friction * lambda[*normal] + small_force)
+                (size > friction * lambda[*normal] + small.force)
                     .then(|| Mode::sliding(lambda_t.map(|component| -component / size)))
             }
             // w_t · d < 0: the impulse would turn the slip round.
             Mode::Sliding(slip) if touching.may_stick => {
                 let w_t = along(tangents.clone().map(w));
                 let along: f64 = w_t.iter().zip(slip.direction).map(|(w, d)| w * d).sum();
-                (along < -small_gap).then_some(Mode::Sticking)
+                (along < -small.w).then_some(Mode::Sticking)
             }
             Mode::Smooth | Mode::Sliding(_) => None,
         };
@@ -182,7 +206,7 @@ fn contradictions<const D: usize>(
 /// Turns the direction of contacts that begin to slip, or slip after an impact, to their slip; whether any turned. In
 /// space friction of one contact moves others, so that a slip need not be against the force that held it.
 fn align<const D: usize>(equation: &Equation, system: &System, modes: &mut Modes, touching: &[Touching]) -> bool {
-    let small = small_gap(equation, system, touching);
+    let forces = Roundoff::forces::<D>(equation, system);
     let mut turned = false;
     for &Touching { contact: k, .. } in
         touching.iter().filter(|touching| D == 3 && (touching.may_stick || touching.slip.is_none()))
@@ -190,7 +214,8 @@ fn align<const D: usize>(equation: &Equation, system: &System, modes: &mut Modes
         let Mode::Sliding(Slip { direction: d, .. }) = modes.contacts[k] else { continue };
         let w_t = along(system.contacts.list[k].tangents.clone().map(|row| w::<D>(equation, row)));
         let size = size(w_t);
-        if size > small && w_t[0] * d[0] + w_t[1] * d[1] < SAME_WAY * size {
+        let small = Roundoff::of::<D>(equation, system, system.contacts.list[k].normal, &forces);
+        if size > small.w && w_t[0] * d[0] + w_t[1] * d[1] < SAME_WAY * size {
             modes.contacts[k] = Mode::sliding(w_t.map(|component| component / size));
             turned = true;
         }

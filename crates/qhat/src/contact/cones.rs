@@ -30,6 +30,10 @@ const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Part of the largest force below which a force counts as zero.
 const ROUNDOFF: f64 = 1e-12;
 
+/// Part of the largest diagonal of S below which the diagonal is roundoff. The largest masses that are told apart are
+/// 1e12 of the smallest.
+const IMMOVABLE: f64 = 1e-14;
+
 /// Friction within this part of its limit counts as at it: x is good to some 1e-12.
 const AT_LIMIT: f64 = 1e-10;
 
@@ -66,66 +70,76 @@ pub(super) fn propose<const D: usize>(
     // The unknowns: λ_n of each contact, then its β_i; and the σ of each pyramid with the places of its λ_n and β_i.
     let mut unknowns = Vec::new();
     let mut pyramids = Vec::new();
-    for (k, (contact, &Touching { slip, may_stick, .. })) in contacts.iter().zip(touching).enumerate() {
+    for (k, (contact, &Touching { slip, may_stick, is_rough, .. })) in contacts.iter().zip(touching).enumerate() {
         let normal = |[a, b]: [f64; 2]| Unknown { k, tests: [1.0, 0.0, 0.0], lambda: [1.0, a, b] };
         if let Some(d) = slip.filter(|_| !may_stick) {
             unknowns.push(normal(d.map(|d| -contact.friction * d))); // λ_t = −μ λ_n d
             continue;
         }
         unknowns.push(normal([0.0; 2]));
-        let edges = edges(contact.tangents.len(), slip.unwrap_or([1.0, 0.0]));
+        let edges = edges(if is_rough { contact.tangents.len() } else { 0 }, slip.unwrap_or([1.0, 0.0]));
         if !edges.is_empty() {
             pyramids.push((k, unknowns.len() - 1, unknowns.len()..unknowns.len() + edges.len()));
         }
         let edge = |[a, b]: [f64; 2]| Unknown { k, tests: [0.0, a, b], lambda: [0.0, a, b] };
         unknowns.extend(edges.into_iter().map(edge));
     }
-    // Rows and unknowns of a contact are scaled alike, to a unit diagonal of its normal: so heavy contacts count as
-    // light.
-    let scale = |k: usize| 1.0 / S[first[k]][first[k]].sqrt();
+    // Every unknown and its row are scaled alike, to a unit diagonal of M. So a chain of beads that can only move as a
+    // whole, with its load, counts as the beads do across the chain; and heavy contacts count as light.
+    let in_S = |a: usize, row: usize, b: usize, column: usize| S[first[b] + column][first[a] + row];
+    let product = |of: &[f64; 3], a: usize, with: &[f64; 3], b: usize| -> f64 {
+        let rows = (0..first[a + 1] - first[a]).filter(|&row| of[row] != 0.0);
+        rows.map(|row| {
+            let columns = (0..first[b + 1] - first[b]).map(|column| in_S(a, row, b, column) * with[column]);
+            of[row] * columns.sum::<f64>()
+        })
+        .sum()
+    };
+    let mut scale: Vec<f64> = unknowns.iter().map(|it| product(&it.tests, it.k, &it.tests, it.k)).collect();
+    let largest = scale.iter().fold(f64::MIN_POSITIVE, |most, diagonal| most.max(*diagonal));
+    // A contact that cannot move at all is left as it is.
+    let unit = |diagonal: f64| 1.0 / if diagonal > IMMOVABLE * largest { diagonal } else { largest }.sqrt();
+    scale.iter_mut().for_each(|diagonal| *diagonal = unit(*diagonal));
     let n = unknowns.len() + pyramids.len();
     let (mut M, mut q) = (vec![0.0; n * n], vec![0.0; n]);
     for (i, unknown) in unknowns.iter().enumerate() {
-        let a = unknown.k;
-        for row in 0..first[a + 1] - first[a] {
-            let tests = scale(a) * unknown.tests[row];
-            q[i] += tests * p[first[a] + row]; // q = tests · p
-            for (j, other) in unknowns.iter().enumerate() {
-                let b = other.k;
-                let w = (0..first[b + 1] - first[b])
-                    .map(|column| S[first[b] + column][first[a] + row] * other.lambda[column]);
-                M[i * n + j] += tests * scale(b) * w.sum::<f64>(); // M = tests · S λ
-            }
+        let rows = unknown.tests.iter().zip(&p[first[unknown.k]..]);
+        q[i] = scale[i] * rows.map(|(tests, p)| tests * p).sum::<f64>(); // q = tests · p
+        for (j, other) in unknowns.iter().enumerate() {
+            let S_lambda = product(&unknown.tests, unknown.k, &other.lambda, other.k);
+            M[i * n + j] = scale[i] * scale[j] * S_lambda; // M = tests · S λ
         }
     }
     for (number, (k, normal, edges)) in pyramids.iter().enumerate() {
         let sigma = unknowns.len() + number;
-        M[sigma * n + normal] = contacts[*k].friction; // μ λ_n
+        let of_sigma = 1.0 / scale[edges.start];
+        M[sigma * n + normal] = of_sigma * scale[*normal] * contacts[*k].friction; // μ λ_n
         for edge in edges.clone() {
-            M[edge * n + sigma] = 1.0; // e_i·w_t + σ
-            M[sigma * n + edge] = -1.0; // − Σ β_i
+            M[edge * n + sigma] = of_sigma * scale[edge]; // e_i·w_t + σ
+            M[sigma * n + edge] = -of_sigma * scale[edge]; // − Σ β_i
         }
     }
-    let x = lemke(&M, &q)?;
+    let (mut x, w) = lemke(&M, &q)?;
+    x.iter_mut().zip(&scale).for_each(|(x, scale)| *x *= scale); // λ_n and β_i; σ stays scaled
 
     // λ_n > 0: the contact is closed.
     let zero = ROUNDOFF * x[..unknowns.len()].iter().fold(0.0_f64, |most, force| most.max(*force));
     for (unknown, _) in unknowns.iter().zip(&x).filter(|&(unknown, force)| unknown.tests[0] > 0.0 && *force > zero) {
-        let Touching { contact, slip, may_stick } = touching[unknown.k];
+        let Touching { contact, slip, may_stick, .. } = touching[unknown.k];
         proposed.contacts[contact] = match slip.filter(|_| !may_stick) {
             Some(d) => Mode::sliding(d),
-            None if contacts[unknown.k].tangents.is_empty() => Mode::Smooth,
+            None if !touching[unknown.k].is_rough => Mode::Smooth,
             None => Mode::Sticking,
         };
     }
     // Σ β_i = μ λ_n: friction at its limit follows the normal force, even where there is no slip. So the remaining
     // rows are independent where many contacts hold what few would.
-    for (k, normal, edges) in pyramids {
+    for (number, (k, normal, edges)) in pyramids.into_iter().enumerate() {
         let beta = x[edges.clone()].iter().zip(&unknowns[edges.clone()]);
         let lambda_t =
             beta.fold([0.0; 2], |[a, b], (beta, edge)| [a + beta * edge.lambda[1], b + beta * edge.lambda[2]]);
         let limit = contacts[k].friction * x[normal];
-        let is_at_limit = x[edges].iter().sum::<f64>() >= (1.0 - AT_LIMIT) * limit;
+        let is_at_limit = w[unknowns.len() + number] == 0.0 || x[edges].iter().sum::<f64>() >= (1.0 - AT_LIMIT) * limit;
         let size = size(lambda_t);
         let mode = &mut proposed.contacts[touching[k].contact];
         if mode.is_closed() && is_at_limit && size > 0.0 {

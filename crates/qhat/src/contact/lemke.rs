@@ -28,11 +28,12 @@ const ROUNDOFF: f64 = 1e-12;
 /// Pivots for each unknown: problems that end at all take about one.
 const PIVOTS: usize = 20;
 
-/// x for M, row after row, and q; `None` if no solution was found.
-pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<Vec<f64>> {
+/// x and w for M, row after row, and q; of each pair at least one number is exactly zero. `None` if no solution was
+/// found.
+pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = q.len();
     if q.iter().all(|&q| q >= 0.0) {
-        return Some(vec![0.0; n]);
+        return Some((vec![0.0; n], q.to_vec()));
     }
     if n > LARGEST {
         return None;
@@ -55,11 +56,12 @@ pub(super) fn lemke(M: &[f64], q: &[f64]) -> Option<Vec<f64>> {
         pivot(&mut table, row, entering);
         let left = std::mem::replace(&mut basis[row], entering);
         if left == extra {
-            let mut x = vec![0.0; n];
-            for (variable, row) in basis.iter().zip(&table).filter(|&(&variable, _)| variable >= n) {
-                x[variable - n] = size * row[right].max(0.0);
+            let mut w_x = vec![0.0; 2 * n];
+            for (&variable, row) in basis.iter().zip(&table).filter(|&(&variable, _)| variable < 2 * n) {
+                w_x[variable] = size * row[right].max(0.0);
             }
-            return Some(x);
+            let x = w_x.split_off(n);
+            return Some((x, w_x));
         }
         entering = (left + n) % (2 * n); // its partner: x_i of w_i, w_i of x_i
         row = leaving(&table, &basis, entering)?;
@@ -132,7 +134,7 @@ mod tests {
                 (0..n * n).map(|e| column(e / n).zip(column(e % n)).map(|(a, b)| B[a] * B[b]).sum()).collect();
             let q: Vec<f64> =
                 (0..n).map(|i| column(i).zip(&y).map(|(a, y)| B[a] * y).sum::<f64>() + s[i].max(0.0)).collect();
-            let x = lemke(&M, &q).unwrap_or_else(|| panic!("seed {seed}"));
+            let (x, _) = lemke(&M, &q).unwrap_or_else(|| panic!("seed {seed}"));
             let largest = x.iter().fold(1.0_f64, |most, x| most.max(*x));
             for i in 0..n {
                 let w = q[i] + (0..n).map(|j| M[i * n + j] * x[j]).sum::<f64>();

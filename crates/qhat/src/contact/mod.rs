@@ -22,14 +22,17 @@ mod cones;
 mod event_functions;
 mod impact;
 mod lemke;
+mod nearest;
 mod resolution;
 mod rest;
+mod roundoff;
 mod start;
 
-pub(crate) use complementarity::NoConsistentModes;
+pub(crate) use complementarity::{NoConsistentModes, along, size};
 use complementarity::{Touching, settle};
 pub(crate) use event_functions::{EventCause, EventFunctions, Normals, first_violated};
 use impact::{Impact, hold};
+pub(crate) use nearest::NearestStart;
 pub(crate) use resolution::EventResolution;
 pub(crate) use rest::{RestThresholds, TOUCH_DISTANCE, rest_speed};
 pub(crate) use start::{close, deepest};

@@ -12,7 +12,7 @@ use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, set
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::{Motion, largest};
-use crate::report::{Event, EventKind};
+use crate::report::{Event, EventKind, Warning};
 use crate::settings::Feedback;
 use crate::structure::Contacts;
 use crate::system::System;
@@ -35,6 +35,8 @@ pub(crate) struct Resolved {
     pub(crate) lost: f64,
     /// Impacts, in which a contact closed faster than the bounce speed; then the changes of modes.
     pub(crate) events: Vec<Event>,
+    /// Contacts that were struck at once.
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// A system at the time of an event.
@@ -163,7 +165,7 @@ impl<const D: usize> EventResolution<'_, D> {
         let speed = size(slip);
         let rest_speed = if stopping { STOPS * self.rest_speed() } else { self.rest_speed() };
         let slip = (speed > rest_speed).then(|| slip.map(|component| component / speed));
-        Touching { contact: k, slip, may_stick: may_stick || slip.is_none() }
+        Touching { contact: k, slip, may_stick: may_stick || slip.is_none(), is_rough: !tangents.is_empty() }
     }
 
     /// The impact of the closing contacts on all that are near.
@@ -183,11 +185,35 @@ impl<const D: usize> EventResolution<'_, D> {
         let bounces: Vec<bool> = near.iter().map(|&k| -self.rate(k) > bounce_speed).collect();
         let mut during = modes.clone();
         for touching in touching.iter().filter(|touching| closing.contains(&touching.contact)) {
-            during.contacts[touching.contact] = touching.closed(self.system);
+            during.contacts[touching.contact] = touching.closed();
         }
         let EventResolution { equation, system, qd, .. } = self;
         resolved.lost += Impact::<D> { equation, system, touching: &touching, qd }.collide(&mut during, &bounces)?;
+        if bounces.contains(&true) {
+            resolved.warnings.extend(self.shared(near));
+        }
         Ok(())
+    }
+
+    /// Two contacts that give back speed and share a particle that moves, both with an impulse.
+    fn shared(&self, near: &[usize]) -> Option<Warning> {
+        let (list, layout) = (&self.system.contacts.list, &self.equation.rows.J.layout);
+        let struck: Vec<usize> = near
+            .iter()
+            .copied()
+            .filter(|&k| list[k].restitution > 0.0 && self.equation.lambda[list[k].normal] > 0.0)
+            .collect();
+        let moving = |k: usize| {
+            let particles = &layout.particle[layout.start[list[k].normal]..layout.start[list[k].normal + 1]];
+            particles.iter().filter(|particle| self.system.inverse_mass[particle.0] > 0.0)
+        };
+        let pair = struck.iter().enumerate().find_map(|(place, &one)| {
+            let other =
+                struck[place + 1..].iter().find(|&&other| moving(one).any(|a| moving(other).any(|b| a == b)))?;
+            Some([one, *other])
+        })?;
+        let name = |k: usize| self.system.constraints[list[k].constraint].name.clone();
+        Some(Warning::SharedImpact { time: self.t, constraints: pair.map(name) })
     }
 
     /// Opens the contacts that separate faster than the bounce speed, after an impact the closed ones, too. Returns the

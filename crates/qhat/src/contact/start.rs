@@ -1,14 +1,13 @@
 //! Contacts of a start: how deep the deepest is violated, and which of them act.
 
 use super::{EventResolution, RestThresholds, TOUCH_DISTANCE};
-use crate::modes::Mode;
 use crate::multiplier::Equation;
 use crate::point::Motion;
 use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// The open contact that is violated most: the index of its constraint, and −C [m]. `None` where every open contact is
+/// The contact that is violated most: the index of its constraint, and −C [m]. `None` where every contact is
 /// within `TOUCH_DISTANCE` × `tolerance` of its row's scale.
 pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance: f64) -> Option<(usize, f64)> {
     if system.contacts.list.is_empty() {
@@ -17,11 +16,8 @@ pub(crate) fn deepest<const D: usize>(system: &System, state: &State, tolerance:
     let mut rows = system.empty_rows();
     let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     system.evaluate_rows(motion, &mut rows);
-    let contacts = system.contacts.list.iter().enumerate();
-    let open = contacts.filter(|(k, contact)| {
-        state.modes.contacts.get(*k).is_none_or(|&mode| mode == Mode::Open) && !state.modes.is_gone(contact)
-    });
-    let depths = open.map(|(_, contact)| (contact, -rows.C[contact.normal]));
+    let contacts = system.contacts.list.iter().filter(|contact| !state.modes.is_gone(contact));
+    let depths = contacts.map(|contact| (contact, -rows.C[contact.normal]));
     let violated =
         depths.filter(|(contact, depth)| *depth > TOUCH_DISTANCE * tolerance * system.row_scale[contact.normal]);
     violated.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(contact, depth)| (contact.constraint, depth))

@@ -28,7 +28,7 @@ fn at<const D: usize>(system: &System, state: &State) -> Equation {
 }
 
 fn all(contacts: usize) -> Vec<Touching> {
-    (0..contacts).map(|contact| Touching { contact, slip: None, may_stick: true }).collect()
+    (0..contacts).map(|contact| Touching { contact, slip: None, may_stick: true, is_rough: false }).collect()
 }
 
 /// A x = b by elimination with pivoting on rows.
@@ -138,7 +138,8 @@ fn friction_sticks_slips_or_lifts_off() {
         equation.rows.J.multiply::<3>(&force.map(|component| component / mass), &mut b);
         equation.b.sum = b.iter().map(|rate| -rate).collect();
         let mut modes = Modes::at_first(&system.contacts);
-        settle::<3>(&mut equation, &system, &mut modes, &all(1)).unwrap();
+        let rough = Touching { is_rough: true, ..all(1)[0] };
+        settle::<3>(&mut equation, &system, &mut modes, &[rough]).unwrap();
         let across = [b[1], b[2]];
         let size = (across[0] * across[0] + across[1] * across[1]).sqrt();
         match modes.contacts[0] {

@@ -129,8 +129,9 @@ pub fn check_start(system: &System, state: &State, settings: &Settings) -> Resul
     }
 }
 
-/// Moves a state to the nearest one with C = 0 and Ċ = 0, in the mass metric, and closes taut ropes and contacts at
-/// rest. A consistent state does not move.
+/// Moves a state to the nearest one, in the mass metric, with C = 0 and Ċ = 0 in which no contact or limit is violated,
+/// and closes taut ropes and contacts at rest. A consistent state does not move. A velocity with which a touching
+/// contact approaches stays: the first step resolves it as an impact, with the restitution of the contact.
 ///
 /// # Errors
 /// [`StepError::NotSatisfied`] where no such positions are found; the state stays as it was.

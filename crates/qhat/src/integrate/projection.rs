@@ -5,10 +5,13 @@
 //! q̇ ← q̇ − W Jᵀ A⁻¹ Ċ,  Ċ = J q̇ + C_t
 //! ```
 //!
+//! Contacts that this violates, or lets approach, take part as `contact/nearest.rs` says.
+//!
 //! Newton's method, with the step halved while it does not bring the constraints nearer. It fails where no q satisfies
 //! them, or where the start is too far away.
 
 use super::Workspace;
+use crate::contact::{NearestStart, TOUCH_DISTANCE};
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
 use crate::multiplier::Equation;
@@ -40,8 +43,14 @@ pub(super) fn project<const D: usize>(
     q.copy_from_slice(&state.q);
     qd.copy_from_slice(&state.qd);
     let mut projector = Projector::<D> { system, settings, equation, t: state.t, q, qd };
-    let (residual_before, iterations) = projector.positions()?;
+    let (residual_before, mut iterations) = projector.positions()?;
+    if !system.contacts.list.is_empty() {
+        iterations += projector.contacts(state)?;
+    }
     projector.velocities();
+    if !system.contacts.list.is_empty() {
+        projector.approaches(state)?;
+    }
     let report = Projection {
         moved: farthest::<D>(q, &state.q),
         velocity_changed: farthest::<D>(qd, &state.qd),
@@ -133,6 +142,53 @@ impl<const D: usize> Projector<'_, D> {
             }
         }
         self.is_met(self.off()).then_some(MAX_ITERATIONS)
+    }
+
+    /// Where C = 0 violates a contact: brings q, from its start on, onto the nearest that satisfies the contacts, too.
+    /// Returns the number of iterations.
+    fn contacts(&mut self, state: &State) -> Result<usize, StepError> {
+        let (mut nearest, q, qd) = self.nearest();
+        if !nearest.is_violated::<D>(&state.modes, q, qd) {
+            return Ok(0);
+        }
+        let deepest = nearest.deepest(&state.modes);
+        let Ok(modes) = nearest.positions::<D>(&state.modes, &state.q, q, qd) else {
+            let (row, residual) = deepest.unwrap_or_default();
+            return Err(StepError::NotSatisfied { time: self.t, row: self.system.row_names[row].clone(), residual });
+        };
+        self.equation.set_modes(self.system, &modes);
+        let (_, iterations) = self.positions()?;
+        self.equation.set_modes(self.system, &state.modes);
+        let (mut nearest, q, qd) = self.nearest();
+        if nearest.is_violated::<D>(&state.modes, q, qd) {
+            let deepest = nearest.deepest(&state.modes);
+            return Err(self.violated(deepest.map_or(0, |(row, _)| row)));
+        }
+        Ok(iterations)
+    }
+
+    /// Where Ċ = 0 lets a touching contact approach: the nearest q̇, from that of the start on, that does not.
+    fn approaches(&mut self, state: &State) -> Result<(), StepError> {
+        let (mut nearest, q, qd) = self.nearest();
+        if nearest.approaches::<D>(&state.modes, q, &state.qd, qd) {
+            let outcome = nearest.velocities::<D>(&state.modes, q, &state.qd, qd);
+            outcome.map_err(|failure| self.violated(self.system.contacts.list[failure.contact].normal))?;
+            self.equation.set_modes(self.system, &state.modes);
+        }
+        Ok(())
+    }
+
+    /// The problem with contacts, and the motion on its way.
+    fn nearest(&mut self) -> (NearestStart<'_>, &mut [f64], &mut [f64]) {
+        let Projector { system, settings, equation, t, q, qd } = self;
+        let tolerance = TOUCH_DISTANCE * settings.constraint_tolerance;
+        (NearestStart { equation, system, t: *t, tolerance }, q, qd)
+    }
+
+    /// The error that names a row as it was evaluated last.
+    fn violated(&self, row: usize) -> StepError {
+        let residual = self.equation.rows.C[row];
+        StepError::NotSatisfied { time: self.t, row: self.system.row_names[row].clone(), residual }
     }
 
     /// Takes Ċ out of q̇, unless it is roundoff.

@@ -51,12 +51,14 @@ impl Workspace {
         &self.equation
     }
 
-    /// Solves the equation at a state; a factor of A that is at hand is kept.
+    /// Solves the equation at a state, for a reader: λ and Q̂ contain the friction of sliding contacts. A factor of A
+    /// that is at hand is kept.
     pub(crate) fn solve<const D: usize>(&mut self, system: &System, state: &State, feedback: &Feedback) -> &Equation {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         self.set_modes(system, state);
         let is_factored = feedback.diagonal_drag == 0.0 && self.is_factored_at(state);
         self.equation.solve(system, motion, feedback, is_factored);
+        self.equation.show_friction();
         self.equation.solver.memory.forget();
         if feedback.diagonal_drag == 0.0 {
             self.note_factored(state);

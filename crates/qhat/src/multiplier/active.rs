@@ -26,15 +26,15 @@ impl Equation {
         self.inactive.get(row).is_some_and(|inactive| *inactive)
     }
 
-    /// C, Ċ, J and γ, with zeros for C, Ċ and γ of inactive rows; directions that follow their slip are updated.
+    /// C, Ċ, J and γ, with zeros for C, Ċ and γ of inactive rows; directions of friction go on with the motion.
     pub(crate) fn constrain<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
         self.constrain_all(system, motion);
         if self.inactive.is_empty() {
             return;
         }
-        for contact in self.sliding.iter_mut().filter(|contact| contact.slip.follows) {
+        for contact in self.sliding.iter_mut().filter(|contact| contact.tangents.len() == 2) {
             let row = contact.tangents.start;
-            contact.slip.follow([self.rows.Cd[row], self.rows.Cd[row + 1]]);
+            contact.slip.go_on([self.rows.Cd[row], self.rows.Cd[row + 1]], motion.t);
         }
         self.gaps.C.clone_from(&self.rows.C);
         self.gaps.Cd.clone_from(&self.rows.Cd);

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The friction F of sliding contacts follows λ and is added to both: −J W F to the right-hand side, W F to q̈
-//! (`friction.rs`). A soft row is inert: its force is part of Q, and λ only reports it.
+//! (`friction.rs`). Readers see F as multipliers of tangential rows and as a part of Q̂. A soft row is inert: its force
+//! is part of Q, and λ only reports it.
 
 use super::{Equation, reaction};
 use crate::point::Motion;
@@ -95,6 +96,17 @@ impl Equation {
             if !is_changed {
                 break;
             }
+        }
+    }
+
+    /// Adds the friction of sliding contacts to λ and Q̂ of an equation that is solved, as sticking contacts have it:
+    /// so terms and outputs show it, and their forces add up to M q̈.
+    pub(crate) fn show_friction(&mut self) {
+        for contact in &self.sliding {
+            contact.write_multipliers(&mut self.lambda);
+        }
+        if !self.sliding.is_empty() {
+            self.Q_hat.iter_mut().zip(&self.friction.force).for_each(|(held, friction)| *held += friction);
         }
     }
 

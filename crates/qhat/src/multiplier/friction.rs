@@ -34,6 +34,14 @@ pub(crate) struct Sliding {
 }
 
 impl Sliding {
+    /// λ_t = −μ λ_n d, in the multipliers.
+    pub(super) fn write_multipliers(&self, lambda: &mut [f64]) {
+        let lambda_n = lambda[self.normal];
+        for (row, d) in self.tangents.clone().zip(self.slip.direction) {
+            lambda[row] = -self.friction * lambda_n * d;
+        }
+    }
+
     /// F += −μ λ_n Σ_i d_i J_iᵀ.
     fn add_force<const D: usize>(&self, lambda_n: f64, rows: &Rows, F: &mut [f64]) {
         let layout = &rows.J.layout;

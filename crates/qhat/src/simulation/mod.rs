@@ -7,7 +7,7 @@ mod look;
 
 use crate::energy::Energy;
 use crate::error::StepError;
-use crate::integrate::{Workspace, check_finds_events, check_start, project, step, step_for};
+use crate::integrate::{Workspace, check_start, project, step, step_for};
 use crate::report::{Projection, StepReport};
 use crate::settings::{Settings, SettingsError};
 use crate::state::State;
@@ -53,7 +53,7 @@ impl Simulation {
 
     fn begin(&mut self) -> Result<(), StepError> {
         self.projection = Projection::default();
-        check_finds_events(&self.system, &self.settings)?;
+        check_start(&self.system, &self.state, &self.settings)?;
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }

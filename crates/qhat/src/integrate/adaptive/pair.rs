@@ -131,8 +131,8 @@ impl<F: Field> PairStepper<'_, F> {
         self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
     }
 
-    /// The speed that errors of velocities are compared with [m/s].
-    fn speed(&self, h: f64) -> f64 {
+    /// The speed to which errors of velocities are relative [m/s].
+    pub(crate) fn speed(&self, h: f64) -> f64 {
         let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
         // A system at rest to roundoff has no speed to compare with.
         fastest.max(AT_REST * self.system.extent / h)

@@ -108,6 +108,7 @@ impl PairFrame<'_, '_> {
             EventStepper::begin(stepper, state, length).and_then(|mut stepper| {
                 let end = substeps.run(&mut stepper, state);
                 substeps.report.events.append(&mut stepper.events);
+                stepper.warnings.drain(..).for_each(|warning| substeps.report.warn(warning));
                 end
             })
         };

@@ -4,8 +4,8 @@
 //! Between events the modes of all contacts stand, and a substep is a substep of the pair. The event functions of
 //! `contact/event_functions.rs` are all at least −1 while the modes are right. If one of them is below −1 at the end of
 //! a substep, the substep is tried again with a length at which none is below −1 and the first is back near zero
-//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` bounds substeps by the turn
-//! of slips.
+//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` gives friction its direction
+//! within a substep.
 
 mod locate;
 mod slip;
@@ -21,7 +21,7 @@ use crate::drift::Drift;
 use crate::error::StepError;
 use crate::modes::{Mode, Modes};
 use crate::point::Motion;
-use crate::report::Event;
+use crate::report::{Event, Warning};
 use crate::settings::Feedback;
 use crate::state::State;
 use slip::AtStart;
@@ -34,9 +34,15 @@ const SKIP: f64 = 1e-12;
 /// `SHORTEST` of the frame loop.
 const NO_ANSWER: f64 = 1e-11;
 
-/// The shortest bound, in frames, that a slow slip that turns puts on a substep: friction is dissipative whichever
-/// way the slip goes.
-const SLOWEST: f64 = 1e-4;
+/// Times that the directions of slow slips are aligned in one substep. Each time shrinks what they are off by the part
+/// of w that rods and other contacts take away; of a free particle nothing is left after the first.
+const ALIGNMENTS: usize = 20;
+
+/// What aligned directions may be off by, in tolerances.
+const ALIGNED: f64 = 1e-3;
+
+/// The power of h with which the error of a direction that turns evenly grows, at least.
+const TURNING_ORDER: f64 = 2.0;
 
 /// Events of one frame after which no impact bounces any more.
 const BOUNCING: usize = 1000;
@@ -50,6 +56,7 @@ pub(super) struct EventStepper<'a, const D: usize> {
     /// Length of the frame [s].
     frame: f64,
     pub(super) events: Vec<Event>,
+    pub(super) warnings: Vec<Warning>,
     /// Events resolved in this frame.
     count: usize,
     /// The modes at the start of the substep.
@@ -68,6 +75,8 @@ pub(super) struct EventStepper<'a, const D: usize> {
     /// Ċ, λ and J at the start of the substep.
     at_start: AtStart,
     normals: Normals,
+    /// Whether the error of the substep tried last is that of a direction of friction that turned.
+    turns: bool,
 }
 
 impl<'a, const D: usize> EventStepper<'a, D> {
@@ -81,6 +90,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
             run,
             frame,
             events: Vec::new(),
+            warnings: Vec::new(),
             count: 0,
             modes: state.modes.clone(),
             cause: None,
@@ -91,6 +101,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
             event_functions_at_start: Vec::new(),
             at_start: AtStart::default(),
             normals: Normals::default(),
+            turns: false,
         };
         let workspace = &mut *stepper.run.field.workspace;
         workspace.q.copy_from_slice(&state.q);
@@ -124,6 +135,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         self.run.stages.is_first_known = false;
         self.run.field.is_factored = false;
         self.events.append(&mut resolved.events);
+        self.warnings.append(&mut resolved.warnings);
         // The start of the next substep. The resolution evaluated all rows; `constrain` masks the inactive ones.
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
         self.at_start.Cd.clone_from(&equation.rows.Cd);
@@ -139,16 +151,35 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         Ok(())
     }
 
-    /// Tries a substep of h; if it is accepted, its event functions are at hand.
+    /// Tries a substep of h, with directions of friction that follow their slip or turn to its direction at the
+    /// end (`slip.rs`); if it is accepted, its event functions are at hand.
     fn try_length(&mut self, state: &State, h: f64) -> Result<Attempt, Outcome> {
-        self.at_start.prepare::<D>(self.run.system, &mut self.run.field.workspace.equation, h);
-        match self.run.attempt(state, h, state.t + h) {
-            Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => {
+        self.turns = false;
+        let rest_speed = rest_speed(&state.qd, &self.run.field.workspace.equation.WQ, self.frame);
+        let equation = &mut self.run.field.workspace.equation;
+        let turns = self.at_start.prepare::<D>(self.run.system, equation, (state.t, h), rest_speed);
+        for _ in 0..ALIGNMENTS {
+            // The first slope depends on the directions of this try.
+            self.run.stages.is_first_known &= !turns;
+            let attempt = match self.run.attempt(state, h, state.t + h) {
+                Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => attempt,
+                other => return Err(other),
+            };
+            let (speed, tolerance) = (self.run.speed(h), self.run.settings.tolerance);
+            let equation = &mut self.run.field.workspace.equation;
+            let astray = self.at_start.align::<D>(self.run.system, equation, h);
+            let is_aligned = astray.turned <= ALIGNED * tolerance * speed;
+            let error = attempt.error.max(astray.across / speed);
+            self.turns = error > attempt.error;
+            if is_aligned && accepts(error, self.run.settings) {
                 self.write_event_functions(state.t + h);
-                Ok(attempt)
+                return Ok(Attempt { error, ..attempt });
+            } else if is_aligned {
+                return Err(Outcome::Met(Attempt { error, ..attempt }));
             }
-            other => Err(other),
+            self.run.turn_back(state);
         }
+        Err(Outcome::NotMet)
     }
 
     /// The first sliding contact as one whose force has no answer, if any contact slides.
@@ -191,14 +222,11 @@ impl<'a, const D: usize> EventStepper<'a, D> {
 
 impl<const D: usize> Stepper for EventStepper<'_, D> {
     fn estimate_order(&self) -> f64 {
-        self.run.estimate_order()
+        if self.turns { TURNING_ORDER } else { self.run.estimate_order() }
     }
 
     fn longest(&mut self, state: &State) -> f64 {
-        let equation = &self.run.field.workspace.equation;
-        let rest_speed = rest_speed(&state.qd, &equation.WQ, self.frame);
-        let slips = self.at_start.longest::<D>(self.run.system, equation, rest_speed);
-        slips.max(SLOWEST * self.frame).min(self.run.longest(state))
+        self.run.longest(state)
     }
 
     fn across(&mut self, state: &State, h: f64, remaining: f64) -> Option<f64> {

@@ -1,25 +1,34 @@
-//! The direction of friction over one substep, in space: whether it follows the slip, and how short a substep that
-//! takes.
+//! The direction of friction over one substep, in space.
 //!
-//! In the plane a slip cannot turn while its mode lasts. In space friction of a contact changes the slip by
+//! In the plane a slip cannot turn while its mode lasts. In space friction of a contact changes the slip v by
 //!
 //! ```text
-//! |Δslip| = h μ |λ_n| w,   w = J_t W J_tᵀ of a tangential row
+//! |Δv| = K = h μ |λ_n| w,   w = J_t W J_tᵀ of a tangential row
 //! ```
 //!
-//! in a substep of h. While |slip| is a few times that, the direction of friction follows the slip at every stage.
-//! Below that it would turn faster than an explicit step can resolve; it is frozen, which is dissipative.
+//! in a substep of h. While |v| is a few times K, the direction of friction is d = v/|v| at every stage of the method.
+//! A slower slip may turn faster than an explicit method can resolve, or stop on the way. Then d turns, evenly in time,
+//! from the direction at the start to that of the slip at the end, as the implicit Euler method has it,
+//!
+//! ```text
+//! d = u/|u|,   u = v' + K d          v': the slip at the end; u: what it would be without this friction
+//! ```
+//!
+//! which is found by trying the substep again. Nothing of v' is then across d, so a slip that stops, stops in both
+//! components. The largest part of v that is across d at any stage is the error of such a substep, beside that of the
+//! pair, and shrinks with it.
+//! Source of the implicit rule: Moreau, Unilateral Contact and Dry Friction in Finite Freedom Dynamics (1988).
 
 use crate::constraint::Rows;
+use crate::contact::{along, size};
+use crate::modes::Course;
 use crate::multiplier::{Equation, Sliding};
 use crate::point::dot;
 use crate::system::System;
 
-/// The direction of friction follows the slip while |slip| > `FAST` × (change of slip by friction in one substep).
+/// The direction of friction follows the slip while |v| > `FAST` × K: the slip then turns by no more than a quarter of
+/// a radian through friction in one substep, which eight orders of a method resolve.
 const FAST: f64 = 4.0;
-
-/// Angle between the slip and the direction of friction [rad] above which the substep must be short enough to follow.
-const ASTRAY: f64 = 0.03;
 
 /// Ċ of every row, active or not, and λ, at the start of a substep.
 #[derive(Clone, Debug, Default)]
@@ -28,39 +37,75 @@ pub(super) struct AtStart {
     pub(super) lambda: Vec<f64>,
 }
 
+/// What the directions that turn in a substep are off by [m/s].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Astray {
+    /// The largest part of a slip across d: the error of the substep.
+    pub(super) across: f64,
+    /// max K |d' − d|, d' the direction that the rule gives after the substep tried with d.
+    pub(super) turned: f64,
+}
+
 impl AtStart {
-    /// Decides for a substep of h which directions follow their slip.
-    pub(super) fn prepare<const D: usize>(&self, system: &System, equation: &mut Equation, h: f64) {
+    /// Decides for a substep from `start` over h [s] how directions go on; whether there are any that may turn. A slip
+    /// slower than `rest_speed` [m/s] at the start has the direction that it was given there.
+    pub(super) fn prepare<const D: usize>(
+        &self,
+        system: &System,
+        equation: &mut Equation,
+        (start, h): (f64, f64),
+        rest_speed: f64,
+    ) -> bool {
         let Equation { sliding, rows, .. } = equation;
+        let mut turns = false;
         for contact in sliding.iter_mut().filter(|contact| contact.tangents.len() == 2) {
-            contact.slip.follows = self.followable::<D>(system, rows, contact).0 > h;
+            turns = true;
+            let v = slip(contact, &self.Cd);
+            let speed = size(v);
+            let K = change::<D>(contact, h, self.lambda[contact.normal], system, rows);
+            let from = if speed > rest_speed { v.map(|v| v / speed) } else { contact.slip.at_start };
+            // The substep before this one may have been tried from the same start.
+            let to = match contact.slip.course {
+                Course::Turns { to, .. } => to,
+                Course::Kept | Course::Follows => from,
+            };
+            let turn = Course::Turns { from, to, start, h };
+            contact.slip.course = if speed > FAST * K { Course::Follows } else { turn };
+            contact.slip.across = 0.0;
         }
+        turns
     }
 
-    /// The longest substep from here [s]: bounded where a contact slips faster than the rest speed [m/s] and its slip
-    /// has left the direction of friction.
-    pub(super) fn longest<const D: usize>(&self, system: &System, equation: &Equation, rest_speed: f64) -> f64 {
-        let mut longest = f64::INFINITY;
-        for contact in equation.sliding.iter().filter(|contact| contact.tangents.len() == 2) {
-            let (h, slip) = self.followable::<D>(system, &equation.rows, contact);
-            let d = contact.slip.at_start;
-            let across = (slip[0] * d[1] - slip[1] * d[0]).abs();
-            let speed = (slip[0] * slip[0] + slip[1] * slip[1]).sqrt();
-            if speed > rest_speed && across > ASTRAY * speed {
-                longest = longest.min(0.5 * h);
-            }
+    /// Aims directions that turn at what the rule gives after a substep of h that was tried with them.
+    pub(super) fn align<const D: usize>(&self, system: &System, equation: &mut Equation, h: f64) -> Astray {
+        let Equation { sliding, rows, gaps, lambda, .. } = equation;
+        let mut astray = Astray::default();
+        for contact in sliding.iter_mut() {
+            let Course::Turns { from, to, start, h: _ } = contact.slip.course else { continue };
+            let K = change::<D>(contact, h, lambda[contact.normal], system, rows);
+            let after = slip(contact, &gaps.Cd);
+            let u = [after[0] + K * to[0], after[1] + K * to[1]];
+            let free = size(u);
+            let next = if free > 0.0 { u.map(|u| u / free) } else { to };
+            astray.across = astray.across.max(contact.slip.across);
+            astray.turned = astray.turned.max(K * size([next[0] - to[0], next[1] - to[1]]));
+            contact.slip.course = Course::Turns { from, to: next, start, h };
+            contact.slip.across = 0.0;
         }
-        longest
+        astray
     }
+}
 
-    /// The longest substep in which d can follow the slip [s], and the slip at the start of the substep [m/s].
-    fn followable<const D: usize>(&self, system: &System, rows: &Rows, contact: &Sliding) -> (f64, [f64; 2]) {
-        let (layout, W) = (&rows.J.layout, &system.inverse_mass);
-        let row = contact.tangents.start;
-        let entries = layout.start[row]..layout.start[row + 1];
-        let w: f64 = entries.map(|e| W[layout.particle[e].0] * dot(rows.J.entry::<D>(e), rows.J.entry::<D>(e))).sum();
-        let slip = [self.Cd[row], self.Cd[row + 1]];
-        let speed = (slip[0] * slip[0] + slip[1] * slip[1]).sqrt();
-        (speed / (FAST * contact.friction * self.lambda[contact.normal].abs() * w), slip)
-    }
+/// The slip of a contact [m/s].
+fn slip(contact: &Sliding, Cd: &[f64]) -> [f64; 2] {
+    along(contact.tangents.clone().map(|row| Cd[row]))
+}
+
+/// K [m/s].
+fn change<const D: usize>(contact: &Sliding, h: f64, lambda_n: f64, system: &System, rows: &Rows) -> f64 {
+    let (layout, W) = (&rows.J.layout, &system.inverse_mass);
+    let row = contact.tangents.start;
+    let entries = layout.start[row]..layout.start[row + 1];
+    let w: f64 = entries.map(|e| W[layout.particle[e].0] * dot(rows.J.entry::<D>(e), rows.J.entry::<D>(e))).sum();
+    h * contact.friction * lambda_n.abs() * w
 }
