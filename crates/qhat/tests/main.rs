@@ -46,4 +46,5 @@ mod verify_forces;
 mod verify_gears;
 mod verify_implicit;
 mod verify_pendulum;
+mod verify_rattle;
 mod verify_spring;

@@ -7,6 +7,7 @@
 pub(crate) mod control;
 pub(crate) mod dop853;
 pub(crate) mod dopri5;
+mod pace;
 pub(crate) mod pair;
 pub(crate) mod pair_frame;
 mod substeps;

@@ -1,5 +1,6 @@
 //! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
 
+use super::pace::{Pace, Steady};
 use super::{Attempt, Outcome, Stepper, control};
 use crate::drift::{Drift, worst_row};
 use crate::energy;
@@ -11,7 +12,7 @@ use crate::point::Motion;
 use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::space::in_dimension;
-use crate::state::{Carry, State};
+use crate::state::{Carry, State, SteadyMemory};
 use crate::system::System;
 
 /// Length of a substep, in frames, below which shortening it does not help.
@@ -65,8 +66,7 @@ pub(crate) struct Substeps<'a> {
     /// Substeps that may be tried, rejected ones included.
     limit: usize,
     tried: usize,
-    /// The substep to try next [s].
-    proposed: f64,
+    pace: Pace,
     pub(crate) report: StepReport,
     /// The watch of the workspace, until `finish` or `fail` puts it back.
     watch: Option<TensionWatch>,
@@ -78,9 +78,16 @@ impl<'a> Substeps<'a> {
         let watch = frame.workspace.watch.take();
         let Frame { system, settings, length, .. } = *frame;
         let report = StepReport { smallest_substep: length, ..StepReport::default() };
-        let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
+        let pace = Pace::Free(state.carry.as_ref().map_or(length, |carry| carry.substep));
         let (done, tried, limit) = (0.0, 0, usize::MAX);
-        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report, watch }
+        Substeps { system, settings, start: state.t, length, done, limit, tried, pace, report, watch }
+    }
+
+    /// The same at a steady pace, which goes on as the carry of the state says.
+    pub(crate) fn steadily(self, carry: Option<&Carry>) -> Self {
+        let allowed = carry.map_or(f64::INFINITY, |carry| carry.substep);
+        let memory = carry.map(|carry| carry.steady.clone()).unwrap_or_default();
+        Substeps { pace: Pace::Steady(Steady::new(self.length, allowed, memory)), ..self }
     }
 
     /// The same with at most `limit` substeps, or as many as show that these will not do.
@@ -105,8 +112,7 @@ impl<'a> Substeps<'a> {
             match self.judge(outcome, method, state)? {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
-                    self.reject(&substep, growth);
-                    if self.is_too_short() {
+                    if self.reject(&substep, growth) < SHORTEST * self.length {
                         return Err(self.not_satisfied(method, state, substep.end));
                     }
                     method.turn_back(state);
@@ -134,8 +140,13 @@ impl<'a> Substeps<'a> {
     /// The next substep, no longer than the method's longest.
     fn propose(&mut self, longest: f64) -> Proposal {
         self.tried += 1;
-        let h = fit(self.proposed.min(longest), self.length - self.done);
-        let done = if h == self.length - self.done { self.length } else { self.done + h };
+        let (h, done) = match &mut self.pace {
+            Pace::Free(next) => {
+                let h = fit(next.min(longest), self.length - self.done);
+                (h, if h == self.length - self.done { self.length } else { self.done + h })
+            }
+            Pace::Steady(steady) => steady.propose(longest),
+        };
         Proposal { h, end: self.start + done, done }
     }
 
@@ -156,18 +167,24 @@ impl<'a> Substeps<'a> {
         Ok(if is_accepted { Verdict::Accepted { attempt, growth } } else { Verdict::Rejected { growth } })
     }
 
-    fn reject(&mut self, substep: &Proposal, growth: f64) {
+    /// Books a rejection. Returns the length to try next [s].
+    fn reject(&mut self, substep: &Proposal, growth: f64) -> f64 {
         self.report.rejected += 1;
-        self.proposed = substep.h * growth;
-    }
-
-    fn is_too_short(&self) -> bool {
-        self.proposed < SHORTEST * self.length
+        match &mut self.pace {
+            Pace::Free(next) => {
+                *next = substep.h * growth;
+                *next
+            }
+            Pace::Steady(steady) => steady.shorten(),
+        }
     }
 
     /// The substep as it was met: shorter than proposed if an event ends it.
     fn accept(&mut self, substep: Proposal, attempt: &Attempt, growth: f64) -> Proposal {
-        self.proposed = substep.h * growth;
+        match &mut self.pace {
+            Pace::Free(next) => *next = substep.h * growth,
+            Pace::Steady(steady) => steady.accept(attempt.error, self.settings.tolerance),
+        }
         if attempt.h < substep.h {
             let done = self.done + attempt.h;
             return Proposal { h: attempt.h, end: self.start + done, done };
@@ -247,7 +264,11 @@ impl<'a> Substeps<'a> {
             }
             None => (Vec::new(), 0.0, false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, drives, resting: 0 });
+        let (substep, steady) = match self.pace {
+            Pace::Free(next) => (next, SteadyMemory::default()),
+            Pace::Steady(steady) => (steady.allowed, steady.memory),
+        };
+        state.carry = Some(Carry { lambda, substep, steady, deficient, previous: None, drives, resting: 0 });
         self.report.energy = energy::energy(self.system, state);
         self.report
     }

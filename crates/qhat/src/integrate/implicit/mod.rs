@@ -31,7 +31,7 @@ use crate::error::StepError;
 use crate::point::Motion;
 use crate::report::{Solver, StepReport, Warning};
 use crate::settings::Feedback;
-use crate::state::{Carry, Previous, State};
+use crate::state::{Carry, Previous, State, SteadyMemory};
 use crate::system::System;
 use newton::{Ending, Newton, Tried};
 
@@ -83,7 +83,8 @@ pub(crate) fn frame<const D: usize>(
         let equation = frame.workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
-        state.carry = Some(Carry { lambda, substep: length, deficient, previous: None, drives, resting: 0 });
+        let steady = SteadyMemory::default();
+        state.carry = Some(Carry { lambda, substep: length, steady, deficient, previous: None, drives, resting: 0 });
     }
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
