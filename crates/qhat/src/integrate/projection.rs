@@ -12,7 +12,7 @@ use super::Workspace;
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
 use crate::multiplier::{Equation, SolveFor};
-use crate::point::{Motion, block, dot, largest};
+use crate::point::{Motion, block, dot, larger, largest};
 use crate::report::Projection;
 use crate::settings::Settings;
 use crate::space::ParticleId;
@@ -72,7 +72,7 @@ impl<const D: usize> Projector<'_, D> {
         let (system, m) = (self.system, self.system.row_count());
         self.constrain();
         let rigid = (0..m).filter(|&row| system.softness[row].is_rigid());
-        let before = rigid.fold(0.0, |most: f64, row| most.max(self.equation.rows.C[row].abs()));
+        let before = rigid.fold(0.0, |most, row| larger(most, self.equation.rows.C[row].abs()));
         let mut delta = vec![0.0; m];
         let mut start = self.q.to_vec();
         for iteration in 0..MAX_ITERATIONS {
@@ -111,9 +111,9 @@ impl<const D: usize> Projector<'_, D> {
         self.constrain();
         let Projector { system, equation, qd, .. } = self;
         let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
-        let fastest = fastest.fold(0.0, f64::max).sqrt();
+        let fastest = fastest.fold(0.0, larger).sqrt();
         let rows = equation.rows.Cd.iter().zip(&system.row_scale);
-        let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, f64::max);
+        let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, larger);
         if rate * system.extent > CONSISTENT_RATE * fastest {
             equation.factor::<D>(system, 0.0);
             let mut nu = vec![0.0; equation.rows.Cd.len()];
@@ -140,5 +140,5 @@ impl<const D: usize> Projector<'_, D> {
 /// The largest distance between two blocks of D numbers.
 fn farthest<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
     let distances = a.chunks_exact(D).zip(b.chunks_exact(D));
-    distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, f64::max).sqrt()
+    distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, larger).sqrt()
 }

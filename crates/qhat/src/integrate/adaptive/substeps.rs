@@ -2,13 +2,13 @@
 
 use super::pace::{Pace, Steady};
 use super::{Attempt, Outcome, Stepper, control};
-use crate::drift::{Drift, worst_row};
+use crate::drift::{Drift, attainable, worst_row};
 use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::space::in_dimension;
@@ -226,17 +226,25 @@ impl<'a> Substeps<'a> {
         checked.err().unwrap_or_else(|| StepError::NotFinite { time: state.t, particle: first() })
     }
 
-    /// The error that names the row of the tried motion with the largest residual.
+    /// The error of a motion that no substep follows: it names the row of the tried motion with the largest residual,
+    /// or where all rows are met the particle with the largest acceleration.
     fn not_satisfied(&self, method: &impl Stepper, state: &State, end: f64) -> StepError {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
         in_dimension!(self.system.dimension, D => {
             let mut rows = self.system.empty_rows();
             self.system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
-            let (row, _) = worst_row(self.system, &rows.C);
-            match rows.C.get(row) {
-                Some(&residual) => {
-                    StepError::NotSatisfied { time: state.t, row: self.system.row_names[row].clone(), residual }
+            let (row, off) = worst_row(self.system, &rows.C);
+            let is_finite = check_finite::<D>(self.system, state.t, &tried.q, &tried.qd).is_ok();
+            if is_finite && off > attainable(self.system, self.settings, largest(&tried.q)) {
+                let (row, residual) = (self.system.row_names[row].clone(), rows.C[row]);
+                return StepError::NotSatisfied { time: state.t, row, residual };
+            }
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+            match energy::most_accelerated(self.system, motion) {
+                Some((particle, acceleration)) => {
+                    let particle = self.system.particle_names[particle.0].clone();
+                    StepError::RanAway { time: state.t, particle, acceleration }
                 }
                 None => self.not_finite(method, state),
             }
