@@ -178,7 +178,7 @@ pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
 pub use number::larger;
 pub use point::Vector;
-pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
+pub use report::{Event, EventKind, MaxTension, Projection, RepeatedWarning, Solver, StepReport, Warning, WarningLog};
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

@@ -38,6 +38,7 @@ mod step_size;
 mod systems;
 mod tension;
 mod threads;
+mod unaccounted;
 mod verify_body;
 mod verify_chain;
 mod verify_energy;
