@@ -40,9 +40,10 @@ pub(crate) fn check(arguments: &arguments::Check) -> Result<ExitCode, Failure> {
 }
 
 fn invalid(errors: &SceneErrors) -> serde_json::Value {
-    let list = errors.errors.iter().map(
-        |error| json!({ "line": error.line, "column": error.column, "message": error.message, "help": error.help }),
-    );
+    let list = errors.errors.iter().map(|error| {
+        json!({ "line": error.line, "column": error.column, "message": error.message, "help": error.help,
+            "also": error.also })
+    });
     json!({ "valid": false, "errors": list.collect::<Vec<_>>(), "more_errors": errors.more })
 }
 
