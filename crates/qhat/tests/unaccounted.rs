@@ -100,7 +100,7 @@ fn energy_with_a_cause_is_not_told() {
 
     let mut dragged = builder();
     let stone = dragged.particle(Particle::at("stone", [0.0, 0.0]).with_velocity([30.0, 0.0]));
-    dragged.force(Drag { coefficient: 2.0 }).force(AirDrag::still(stone, 0.1, 0.2));
+    dragged.with_force(Drag { coefficient: 2.0 }).force(AirDrag::still(stone, 0.1, 0.2));
     quiet("drag", dragged, systems::settings(Integrator::Auto, FRAME), 120);
 
     let mut bouncing = builder();
