@@ -7,6 +7,7 @@
 //! ```
 
 use crate::workload::Workload;
+use qhat::larger;
 
 /// Length and energy errors of a motion, frame by frame.
 #[derive(Clone, Debug, Default)]
@@ -34,17 +35,14 @@ impl Errors {
         for (a, b, length) in workload.rods() {
             let square = |k: usize| (positions[a * d + k] - positions[b * d + k]).powi(2);
             let error = ((0..d).map(square).sum::<f64>().sqrt() - length).abs() / length;
-            // `f64::max` would ignore a NaN.
-            if error > self.worst_length || error.is_nan() {
-                self.worst_length = error;
-            }
+            self.worst_length = larger(self.worst_length, error);
             self.sum_of_squares += error * error;
         }
         self.lengths += workload.lengths.len();
         let kinetic = kinetic(workload, velocities);
         self.missing = kinetic + potential(workload, positions) - self.start.unwrap_or_default();
-        self.largest_kinetic = self.largest_kinetic.max(kinetic);
-        self.largest_missing = self.largest_missing.max(self.missing.abs());
+        self.largest_kinetic = larger(self.largest_kinetic, kinetic);
+        self.largest_missing = larger(self.largest_missing, self.missing.abs());
     }
 
     /// Root mean square of all relative length errors at all frames.

@@ -1,7 +1,7 @@
 //! Every shipped scene with its own settings, three times.
 
 use cpu_time::ThreadTime;
-use qhat::StepError;
+use qhat::{StepError, larger};
 use qhat_scene::{Scene, shipped};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -72,7 +72,7 @@ fn run(scene: &Scene) -> Result<Outcome, StepError> {
     for _ in 0..frames {
         let report = simulation.step()?;
         substeps += report.substeps;
-        length_error = length_error.max(report.max_relative_length_error);
+        length_error = larger(length_error, report.max_relative_length_error);
     }
     Ok(Outcome {
         cpu: start.elapsed(),

@@ -254,3 +254,50 @@ fn the_largest_tension_has_four_digits() {
         assert!(summary.contains(&expected), "{mass} kg at {y} m: no `{expected}` in\n{summary}");
     }
 }
+
+/// A run whose energy is wrong says so before anything else; its warning is told once, with the number of frames.
+#[test]
+fn energy_that_is_gone_is_said_first() {
+    let folder = Folder::with(&[("bob.toml", PENDULUM)]);
+    let damped = ["run", "bob.toml", "--integrator", "implicit", "--h", "0.05", "--duration", "5"];
+    let text = folder.qhat(&damped).well().stdout;
+    let second = text.lines().nth(1).unwrap_or_default();
+    assert!(second.trim_start().starts_with("caution") && second.contains("energy is gone: "), "{text}");
+    assert_eq!(text.matches("energy was lost without a cause").count(), 1, "{text}");
+
+    let summary = folder.qhat(&[&damped[..], &["--json"]].concat()).well().json();
+    let caution = summary["caution"].as_str().unwrap();
+    assert!(
+        caution.contains(" % of the largest kinetic energy was lost") && caution.contains("a smaller h"),
+        "{caution}"
+    );
+    let warnings = summary["warnings"].as_array().unwrap();
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(warning.as_str().unwrap().contains(" frames, from t = "), "{warning}");
+
+    let summary = folder.qhat(&["run", "bob.toml", "--json"]).well().json();
+    assert!(summary["caution"].is_null(), "{summary}");
+}
+
+/// A force that grows without bound ends the run as diverged and names its particle, and no rod.
+#[test]
+fn a_force_without_bound_is_diverged() {
+    let scene = r#"
+schema = "qhat/1"
+name = "A force that runs away"
+dimension = 2
+particles = [{ id = "p0", at = [0.0, 0.0] }, { id = "p1", at = [0.0, 1.0] }, { id = "p3", at = [1.0, 1.0] }]
+constraints = [{ kind = "distance", between = ["p0", "p1"] }]
+loads = [{ kind = "force", particle = "p3", force = ["-2*p3.vy + sin(3*t)", "2*p3.vx - p3.x^3"] }]
+"#;
+    let folder = Folder::with(&[("wild.toml", scene)]);
+    for integrator in ["auto", "dop853", "dopri5", "rattle", "implicit", "bdf2", "rk4", "euler"] {
+        let ran = folder.qhat(&["run", "wild.toml", "--integrator", integrator, "-q"]);
+        assert_eq!(ran.code, 1, "{integrator}: {}", ran.stderr);
+        assert!(
+            ran.stderr.starts_with("diverged: at t = ") && ran.stderr.contains("`p3`"),
+            "{integrator}: {}",
+            ran.stderr
+        );
+    }
+}

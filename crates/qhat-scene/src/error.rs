@@ -43,12 +43,30 @@ pub struct SceneError {
     pub excerpt: String,
     /// The help: what to write instead.
     pub help: Option<String>,
+    /// The lines of all other places with the same mistake, in the order in which they were found.
+    pub also: Vec<usize>,
+}
+
+/// The most lines with the same mistake that are listed; of the others only the number is told.
+const LISTED: usize = 5;
+
+impl SceneError {
+    /// The other places with the same mistake, as the end of the message; empty where there is none.
+    fn elsewhere(&self) -> String {
+        let list = |lines: &[usize]| lines.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        match self.also.as_slice() {
+            [] => String::new(),
+            [line] => format!(" (and the same in line {line})"),
+            lines if lines.len() <= LISTED => format!(" (and the same in lines {})", list(lines)),
+            lines => format!(" (and the same in lines {} and {} more)", list(&lines[..LISTED]), lines.len() - LISTED),
+        }
+    }
 }
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let SceneError { source_name, line, column, message, excerpt, help, .. } = self;
-        write!(f, "{source_name}:{line}:{column}: {message}\n{excerpt}")?;
+        write!(f, "{source_name}:{line}:{column}: {message}{}\n{excerpt}", self.elsewhere())?;
         help.as_ref().map_or(Ok(()), |help| write!(f, "\nhelp: {help}"))
     }
 }

@@ -27,8 +27,16 @@ impl<'a> Report<'a> {
         Report { name, text, line_starts, errors: Vec::new(), more: false }
     }
 
-    /// Adds an error about these bytes of the text, with the help.
+    /// Adds an error about these bytes of the text, with the help. The same error at another place is told once, with
+    /// all lines.
     pub(crate) fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
+        let message = message.into();
+        let same = |former: &SceneError| former.message == message && former.help == help;
+        if let Some(place) = self.errors.iter().position(same) {
+            let line = self.line_of(self.on_characters(span).start);
+            self.errors[place].also.push(line);
+            return;
+        }
         if self.errors.len() == MOST_ERRORS {
             self.more = true;
             return;
@@ -40,10 +48,11 @@ impl<'a> Report<'a> {
             source_name: self.name.to_owned(),
             line,
             column: before.chars().count() + 1,
-            message: message.into(),
+            message,
             excerpt: self.excerpt(line, &span),
             span,
             help,
+            also: Vec::new(),
         };
         self.errors.push(error);
     }

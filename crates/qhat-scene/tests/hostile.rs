@@ -70,13 +70,17 @@ fn long_texts_are_refused_and_long_lists_are_not_slow() {
     assert!(errors.errors[0].message.contains("bytes"), "{errors}");
 
     let particles: Vec<String> =
-        (0..50_000).map(|i| format!("{{\"id\": \"p{i}\", \"at\": [{i}, 0], \"mass\": 0}}")).collect();
+        (0..50_000).map(|i| format!("{{\"id\": \"p{i}\", \"at\": [{i}, 0], \"mass\": -{i}}}")).collect();
     let text = format!(
         "{{\"schema\": \"qhat/1\", \"name\": \"x\", \"dimension\": 2, \"particles\": [{}]}}",
         particles.join(",")
     );
     let errors = load(&text, "long", Format::Json).unwrap_err();
     assert!(errors.more && errors.errors.len() == 20);
+
+    let same = text.replace("\"mass\": -", "\"mass\": 0, \"comment\": ");
+    let errors = load(&same, "long", Format::Json).unwrap_err();
+    assert!(errors.errors.len() < 20, "errors that are the same are told once: {errors}");
 }
 
 #[test]

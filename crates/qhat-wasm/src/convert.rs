@@ -6,6 +6,7 @@ use crate::{Controls, Projection, Shapes, StepReport, Structure, Terms};
 use js_sys::Float64Array;
 use qhat::{
     Constraint, DistanceForm, EventKind, Feedback, Formulation, Link, NailForm, Settings, Simulation, System, Warning,
+    WarningLog,
 };
 use qhat_shapes::{Shape, Source};
 use wasm_bindgen::{JsCast, JsValue};
@@ -66,11 +67,13 @@ pub(crate) fn energy(energy: &qhat::Energy) -> Record {
         .with("balance", energy.balance())
 }
 
-pub(crate) fn report(report: &qhat::StepReport) -> StepReport {
+/// A report; each of its warnings tells how often and when the run so far has raised it.
+pub(crate) fn report(report: &qhat::StepReport, log: &WarningLog) -> StepReport {
     // The warning about auto's choice is shown beside the choice and not among the other warnings.
     let is_choice = |warning: &&Warning| matches!(warning, Warning::TooStiff { .. });
     let too_stiff = report.warnings.iter().find(is_choice);
     let warnings = report.warnings.iter().filter(|warning| !is_choice(warning));
+    let warnings = warnings.filter_map(|warning| log.entry(warning));
     Record::new()
         .with("substeps", report.substeps as f64)
         .with("rejected", report.rejected as f64)

@@ -156,7 +156,7 @@ impl Simulation {
     /// One step of h. Throws `StepError`; the last good state is kept.
     pub fn step(&mut self) -> Result<StepReport, JsValue> {
         let report = self.inner.step().map_err(|cause| error("StepError", cause))?;
-        Ok(convert::report(&report))
+        Ok(convert::report(&report, self.inner.warnings()))
     }
 
     /// Returns to the start and releases the hand; the controls are kept. Throws `StepError`.

@@ -1,7 +1,7 @@
 //! Drift: how far a motion is from C = 0 and Ċ = 0.
 
 use crate::constraint::Rows;
-use crate::point::{block, minus, norm};
+use crate::point::{block, larger, minus, norm};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -12,7 +12,7 @@ pub(crate) struct Drift {
     pub(crate) residual: f64,
     /// max |Ċ|.
     pub(crate) residual_rate: f64,
-    /// max |C| over the row's own scale, and the row.
+    /// max |C| over the row's own scale, and the row; NaN counts as infinite.
     pub(crate) relative: f64,
     pub(crate) worst_row: usize,
     /// max ||d| − r|/r over the rigid rods.
@@ -25,9 +25,10 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
     let mut drift = Drift::default();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
     for row in (0..rows.C.len()).filter(rigid) {
-        drift.residual = drift.residual.max(rows.C[row].abs());
-        drift.residual_rate = drift.residual_rate.max(rows.Cd[row].abs());
+        drift.residual = larger(drift.residual, rows.C[row].abs());
+        drift.residual_rate = larger(drift.residual_rate, rows.Cd[row].abs());
         let relative = rows.C[row].abs() / system.row_scale[row];
+        let relative = if relative.is_nan() { f64::INFINITY } else { relative };
         if relative > drift.relative {
             (drift.relative, drift.worst_row) = (relative, row);
         }
@@ -38,7 +39,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
             && !inactive.get(named.first_row).is_some_and(|inactive| *inactive)
         {
             let length = norm(minus(block::<D>(q, rod.a), block(q, rod.b)));
-            drift.relative_length = drift.relative_length.max((length - rod.length).abs() / rod.length);
+            drift.relative_length = larger(drift.relative_length, (length - rod.length).abs() / rod.length);
         }
     }
     drift

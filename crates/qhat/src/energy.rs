@@ -5,6 +5,7 @@
 //! missing = T + V − (T + V at t = 0) − work of everything that crossed the border
 //! ```
 
+use crate::error::StepError;
 use crate::force::Acts;
 use crate::point::{Motion, block, dot, norm};
 use crate::space::{ParticleId, in_dimension};
@@ -41,6 +42,49 @@ pub(crate) fn energy(system: &System, state: &State) -> Energy {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
     })
+}
+
+/// Refuses a motion whose kinetic or potential energy is not finite; t is that of the last good state [s].
+///
+/// # Errors
+/// [`StepError::EnergyNotFinite`] with the particle that has the largest part in it.
+pub(crate) fn check_finite<const D: usize>(system: &System, motion: Motion<'_, D>, t: f64) -> Result<(), StepError> {
+    let refused = |energy, particle: ParticleId| StepError::EnergyNotFinite {
+        time: t,
+        energy,
+        particle: system.particle_names[particle.0].clone(),
+    };
+    if !kinetic(system, motion).is_finite() {
+        let own = |i: ParticleId| system.mass[i.0] * dot(motion.v(i), motion.v(i));
+        let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+        return largest_of(moving, own).map_or(Ok(()), |particle| Err(refused("kinetic", particle)));
+    }
+    for force in system.all_forces() {
+        if !force.potential(motion, &system.mass).is_finite() {
+            let concerned = force.particles();
+            let concerned = if concerned.is_empty() { system.particles().collect() } else { concerned };
+            // A force between particles has one potential, and the particle that is farthest out has the largest part.
+            let own = |i: ParticleId| system.mass[i.0] * norm(motion.x(i));
+            return largest_of(concerned.into_iter(), own)
+                .map_or(Ok(()), |particle| Err(refused("potential", particle)));
+        }
+    }
+    Ok(())
+}
+
+/// The particle with the largest number; one whose number is not finite counts as the largest.
+fn largest_of(particles: impl Iterator<Item = ParticleId>, number: impl Fn(ParticleId) -> f64) -> Option<ParticleId> {
+    let size = |i: ParticleId| Some(number(i)).filter(|number| number.is_finite()).unwrap_or(f64::INFINITY);
+    particles.reduce(|best, next| if size(next) > size(best) { next } else { best })
+}
+
+/// The free particle with the largest acceleration under the applied forces, and that acceleration [m/s²].
+pub(crate) fn most_accelerated<const D: usize>(system: &System, motion: Motion<'_, D>) -> Option<(ParticleId, f64)> {
+    let mut Q = vec![0.0; system.coordinate_count()];
+    system.add_forces(motion, &mut Q);
+    let size = |i: ParticleId| system.inverse_mass[i.0] * norm(block::<D>(&Q, i));
+    let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
+    largest_of(moving, size).map(|particle| (particle, size(particle)))
 }
 
 fn kinetic<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {

@@ -1,6 +1,7 @@
 //! The reasons for which a step was not taken. Each error reads as a sentence with the names that a user gave.
 
 use crate::settings::{Integrator, SettingsError};
+use crate::words::{Digits, Seconds};
 use thiserror::Error;
 
 /// The reason for which a step was not taken. The state is the last good one.
@@ -42,6 +43,52 @@ pub enum StepError {
     OutOfBalance {
         /// t of the last good state \[s\].
         time: f64,
+    },
+    /// The kinetic or potential energy is infinite or undefined: its numbers are beyond what can be computed with.
+    #[error(
+        "at t = {} s the {energy} energy of `{particle}` is not a finite number: a position, a velocity, a mass or a \
+         force there is too large to compute with",
+        shown(*time)
+    )]
+    EnergyNotFinite {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// `kinetic` or `potential`.
+        energy: &'static str,
+        /// The particle with the largest part in it.
+        particle: String,
+    },
+    /// The motion changes faster than the shortest substep follows, although the constraints hold.
+    #[error(
+        "at t = {} s the motion of `{particle}` runs away: its acceleration is {} m/s², and no substep is short \
+         enough to follow it. A force that grows without bound does this",
+        shown(*time), Digits(*acceleration)
+    )]
+    RanAway {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The particle with the largest acceleration under the applied forces.
+        particle: String,
+        /// That acceleration [m/s²].
+        acceleration: f64,
+    },
+    /// Coordinates are so large that their roundoff hides the motion.
+    #[error(
+        "at t = {} s `{particle}` is {} m from the origin, where roundoff leaves {} m of a step uncertain: \
+         {integrator} cannot tell forces from it. Put the origin near the system, or take a longer h",
+        shown(*time), Digits(*distance), Digits(*roundoff)
+    )]
+    TooFarOut {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The particle that is farthest out.
+        particle: String,
+        /// Its distance from the origin \[m\].
+        distance: f64,
+        /// The roundoff of a step there \[m\].
+        roundoff: f64,
+        /// The integrator that cannot go on.
+        integrator: Integrator,
     },
     /// A constraint is violated beyond recognition.
     #[error(
@@ -106,9 +153,9 @@ pub enum StepError {
     },
     /// No positions that satisfy the constraints were found nearby.
     #[error(
-        "at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {residual:e}. Compare its \
-         numbers with the positions, and with the constraints beside it",
-        shown(*time)
+        "at t = {} s no positions near by satisfy the constraints: `{row}` is still off by {}, in m or the \
+         unit of its condition. Compare its numbers with the positions, and with the constraints beside it",
+        shown(*time), Digits(residual.abs())
     )]
     NotSatisfied {
         /// t of the last good state \[s\].
@@ -140,11 +187,11 @@ fn beyond(particles: &[String], depth: f64) -> String {
     let names: Vec<String> = particles.iter().map(|name| format!("`{name}`")).collect();
     let verb = if names.len() == 1 { "is" } else { "are" };
     // A depth that rounds to zero is shown with an exponent.
-    let depth = if depth < 1e-6 { format!("{depth:.1e}") } else { shown(depth).to_string() };
+    let depth = if depth < 1e-6 { format!("{depth:.1e}") } else { ((depth * 1e9).round() / 1e9).to_string() };
     format!("{} {verb} {depth} m", names.join(" and "))
 }
 
-/// A time as a person reads it: to the nanosecond, without the roundoff of the sums it came from.
-fn shown(time: f64) -> f64 {
-    (time * 1e9).round() / 1e9
+/// A time as a person reads it [s].
+fn shown(time: f64) -> Seconds {
+    Seconds(time)
 }

@@ -156,6 +156,7 @@ mod structure;
 mod system;
 mod terms;
 mod threads;
+mod words;
 
 pub use allowed::{GeometryError, ValueError};
 pub use body::{Body, BodyError};
@@ -175,8 +176,9 @@ pub use force::{
 pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
+pub use number::larger;
 pub use point::Vector;
-pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
+pub use report::{Event, EventKind, MaxTension, Projection, RepeatedWarning, Solver, StepReport, Warning, WarningLog};
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;
@@ -184,3 +186,4 @@ pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
 pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};
+pub use words::{Digits, Seconds};

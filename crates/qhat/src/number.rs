@@ -9,6 +9,20 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// The larger of two numbers; not a number if one of them is not. `f64::max` would leave that one out, and a maximum of
+/// errors would hide the worst.
+///
+/// ```
+/// # use qhat::larger;
+/// let errors = [1e-3, f64::NAN, 2e-3];
+/// assert!(errors.into_iter().fold(0.0, larger).is_nan());
+/// assert_eq!(errors.into_iter().fold(0.0, f64::max), 2e-3);
+/// ```
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
 /// A real number, alone or with a derivative.
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>

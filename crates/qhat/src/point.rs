@@ -1,6 +1,6 @@
 //! Points and vectors of D components, and the motion of all particles.
 
-pub(crate) use crate::number::{dot, minus, norm, scaled};
+pub(crate) use crate::number::{dot, larger, minus, norm, scaled};
 
 use crate::space::ParticleId;
 
@@ -101,7 +101,7 @@ pub(crate) fn add<const D: usize>(flat: &mut [f64], particle: ParticleId, a: Poi
     }
 }
 
-/// max |x|, without entries that are not a number.
+/// max |x|; not a number if an entry is not.
 pub(crate) fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |most, x| most.max(x.abs()))
+    x.iter().fold(0.0, |most, x| larger(most, x.abs()))
 }

@@ -91,6 +91,17 @@ impl Integrator {
         self.is_adaptive() || self.is_implicit()
     }
 
+    /// What keeps more of the energy where this integrator lost or gained some, as the end of a sentence.
+    pub fn energy_advice(self) -> &'static str {
+        if self.is_adaptive() {
+            "a smaller tolerance keeps more of it"
+        } else if self.is_implicit() {
+            "this method damps motion that is fast for its h, a smaller h damps less, and dop853 follows such motion"
+        } else {
+            "h is too long for this motion, a smaller h keeps more of it, and auto chooses its own substeps"
+        }
+    }
+
     /// Global order of convergence in h; of auto that of its accurate half.
     pub fn order(self) -> u32 {
         match self {

@@ -56,8 +56,9 @@ pub(crate) struct Rank {
 pub(crate) struct Carry {
     /// The last multipliers, the first guess of the next.
     pub(crate) lambda: Vec<f64>,
-    /// The substep to try next [s].
+    /// The substep to try next [s]; of a steady pace the longest that is allowed.
     pub(crate) substep: f64,
+    pub(crate) steady: SteadyMemory,
     /// Whether the rank of A drops near this state.
     pub(crate) is_nearly_singular: bool,
     /// The start of the last step, for a method that looks back.
@@ -66,6 +67,15 @@ pub(crate) struct Carry {
     pub(crate) drives: f64,
     /// Frames for which auto stays with a method that solves at the end of the step.
     pub(crate) resting: u32,
+}
+
+/// What a method of constant substeps knows of their lengths.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SteadyMemory {
+    /// Substeps in a row that would have been accepted at twice the length.
+    pub(crate) calm: u64,
+    /// How often a length proved too long, by the binary exponent of the length in s.
+    pub(crate) too_long: Vec<(i32, u32)>,
 }
 
 /// The state before the last step of a method that solves at the end of the step.

@@ -12,7 +12,7 @@ use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
 use components::Components;
-use qhat::{Integrator, Settings, Simulation, Solver, Terms, evaluate};
+use qhat::{Integrator, Settings, Simulation, Solver, Terms, evaluate, larger};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -40,9 +40,10 @@ pub(crate) fn check(arguments: &arguments::Check) -> Result<ExitCode, Failure> {
 }
 
 fn invalid(errors: &SceneErrors) -> serde_json::Value {
-    let list = errors.errors.iter().map(
-        |error| json!({ "line": error.line, "column": error.column, "message": error.message, "help": error.help }),
-    );
+    let list = errors.errors.iter().map(|error| {
+        json!({ "line": error.line, "column": error.column, "message": error.message, "help": error.help,
+            "also": error.also })
+    });
     json!({ "valid": false, "errors": list.collect::<Vec<_>>(), "more_errors": errors.more })
 }
 
@@ -146,7 +147,7 @@ impl Findings {
             rows: system.row_count(),
             rows_on_free_particles: rows + open_rows,
             open_rows,
-            max_residual_at_start: rigid().fold(0.0, |max: f64, row| max.max(start.residual[row].abs())),
+            max_residual_at_start: rigid().fold(0.0, |max, row| larger(max, start.residual[row].abs())),
             worst_row_at_start: worst.filter(|_| !consistent).map(|row| system.row_names()[row].clone()),
             consistent_at_start: consistent,
             feasible,

@@ -7,7 +7,7 @@ use crate::run::progress::Progress;
 use crate::source::Source;
 use crate::status::Status;
 use crate::trajectory::stored::Stored;
-use qhat::{Constraint, ParticleId, Settings, Simulation, State, StepError, System, evaluate};
+use qhat::{Constraint, ParticleId, Seconds, Settings, Simulation, State, StepError, System, evaluate};
 use qhat_scene::Scene;
 use qhat_shapes::{Picture, Reading};
 use std::path::Path;
@@ -121,7 +121,7 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
     for (index, frame) in lengths.enumerate() {
         if interrupt.came() {
             progress.finish();
-            let message = format!("stopped by Ctrl-C at t = {} s", simulation.state().time());
+            let message = format!("stopped by Ctrl-C at t = {} s", Seconds(simulation.state().time()));
             return Ok(Ending { status: Status::Interrupted, message: Some(message) });
         }
         match simulation.advance(frame) {

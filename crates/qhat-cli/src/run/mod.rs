@@ -116,7 +116,7 @@ impl Job {
             self.tally.cpu += clock.elapsed();
             self.tally.reached(&simulation);
             match outcome {
-                Ok(report) => self.tally.step(simulation.system(), &report),
+                Ok(report) => self.tally.step(simulation.system(), &report, self.frames.time(index)),
                 // The frame is no multiple of h, so the options are at fault. The state is unchanged.
                 Err(StepError::Settings(error)) => return Err(self.frames.refused(&error, simulation.settings())),
                 Err(error) => return Ok(Some(Stop::Error(error))),
@@ -138,7 +138,7 @@ impl Job {
     }
 
     fn record(&mut self, system: &System, time: f64, terms: &Terms) -> Result<(), Failure> {
-        self.tally.frame(system, terms);
+        self.tally.frame(system, time, terms);
         match &mut self.recorder {
             Some(recorder) => recorder.frame(time, terms),
             None => Ok(()),

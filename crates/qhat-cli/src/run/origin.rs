@@ -6,7 +6,7 @@ use super::summary::Tally;
 use crate::failure::Failure;
 use crate::source::Source;
 use crate::status::Status;
-use qhat::{Feedback, Settings, StepError};
+use qhat::{Feedback, Seconds, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
 
@@ -75,11 +75,11 @@ impl Origin {
     /// Settings that the engine refused in the middle of the run.
     pub(super) fn close(&mut self, tally: &Tally, stopped: Option<&Stop>) -> Result<(), Failure> {
         self.time_reached = tally.time_reached;
-        self.warnings.clone_from(&tally.warnings);
+        self.warnings = tally.warnings();
         (self.status, self.error) = match stopped {
             None => (Status::Done, None),
             Some(Stop::Interrupt) => {
-                (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
+                (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", Seconds(tally.time_reached))))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
             Some(Stop::Error(error)) => (Status::of(error), Some(error.to_string())),

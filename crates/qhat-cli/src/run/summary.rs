@@ -5,9 +5,12 @@ use super::origin::Origin;
 use crate::failure::Failure;
 use crate::print::{self, count, small};
 use crate::status::Status;
-use qhat::{Integrator, Simulation, Solver, StepReport, System, Terms, Warning};
+use qhat::{Digits, Integrator, Simulation, Solver, StepReport, System, Terms, WarningLog, larger};
 use serde::Serialize;
 use std::time::Duration;
+
+/// The energy error, over the largest kinetic energy, above which the summary begins with it [1].
+const CAREFUL: f64 = 0.01;
 
 /// Counts and maxima over a run.
 #[derive(Debug, Default)]
@@ -25,10 +28,9 @@ pub(crate) struct Tally {
     /// t of the last good state \[s\].
     pub(super) time_reached: f64,
     pub(super) cpu: Duration,
-    pub(super) warnings: Vec<String>,
-    /// The warning of the frame that spent its budget and ended farthest off: its place in `warnings`, and its relative
-    /// error.
-    worst_budget: Option<(usize, f64)>,
+    log: WarningLog,
+    /// The first integrator that was left to advance a frame and is not adaptive, else the last one.
+    carrier: Option<Integrator>,
     /// The number of frames of each integrator and solver, in the order of their first frames.
     carried: Vec<Carried>,
     events: Events,
@@ -60,24 +62,24 @@ impl Tally {
         let rods = system.links().filter(|link| link.is_rod()).map(|rod| rod.rows.start);
         for row in rods.filter(|&row| system.is_rigid(row)) {
             let relative = terms.residual[row].abs() / system.row_scales()[row];
-            self.max_relative_length_error = self.max_relative_length_error.max(relative);
+            self.max_relative_length_error = larger(self.max_relative_length_error, relative);
         }
     }
 
-    /// Notes the terms of a frame.
-    pub(super) fn frame(&mut self, system: &System, terms: &Terms) {
+    /// Notes the terms of the frame at `time` \[s\].
+    pub(super) fn frame(&mut self, system: &System, time: f64, terms: &Terms) {
         self.frames += 1;
         let rigid = (0..system.row_count()).filter(|&row| system.is_rigid(row));
-        self.max_residual = rigid.fold(self.max_residual, |max, row| max.max(terms.residual[row].abs()));
-        terms.warnings.iter().for_each(|warning| self.warn(warning));
+        self.max_residual = rigid.fold(self.max_residual, |max, row| larger(max, terms.residual[row].abs()));
+        self.log.note(&terms.warnings, time);
     }
 
-    /// Notes the report of a step to the next frame.
-    pub(super) fn step(&mut self, system: &System, report: &StepReport) {
+    /// Notes the report of a step to the next frame, which is at `time` \[s\].
+    pub(super) fn step(&mut self, system: &System, report: &StepReport, time: f64) {
         self.substeps += report.substeps;
         self.rejected += report.rejected;
-        self.max_residual = self.max_residual.max(report.max_residual);
-        self.max_relative_length_error = self.max_relative_length_error.max(report.max_relative_length_error);
+        self.max_residual = larger(self.max_residual, report.max_residual);
+        self.max_relative_length_error = larger(self.max_relative_length_error, report.max_relative_length_error);
         self.carry(report.integrator, report.solver);
         if let Some(largest) = report.max_tension
             && self.max_tension.as_ref().is_none_or(|former| former.tension.abs() < largest.tension.abs())
@@ -86,10 +88,13 @@ impl Tally {
             self.max_tension = Some(MaxTension { tension: largest.tension, link, time: largest.time });
         }
         report.events.iter().for_each(|event| self.events.note(event));
-        report.warnings.iter().for_each(|warning| self.warn(warning));
+        self.log.note(&report.warnings, time);
     }
 
     fn carry(&mut self, integrator: Integrator, solver: Solver) {
+        if self.carrier.is_none_or(Integrator::is_adaptive) {
+            self.carrier = Some(integrator);
+        }
         let integrator = integrator.name();
         let mut known = self.carried.iter_mut();
         match known.find(|carried| carried.integrator == integrator && carried.solver == solver) {
@@ -105,19 +110,27 @@ impl Tally {
         self.energy_error_max = simulation.energy_error_max();
     }
 
-    fn warn(&mut self, warning: &Warning) {
-        let words = warning.to_string();
-        if let Warning::BudgetSpent { relative, .. } = *warning {
-            match self.worst_budget {
-                Some((_, before)) if before >= relative => return,
-                Some((place, _)) => self.warnings[place] = words,
-                None => self.warnings.push(words),
-            }
-            let place = self.worst_budget.map_or(self.warnings.len() - 1, |(place, _)| place);
-            self.worst_budget = Some((place, relative));
-        } else if !self.warnings.contains(&words) {
-            self.warnings.push(words);
+    /// The warnings of the run, each told once.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        self.log.entries().iter().map(ToString::to_string).collect()
+    }
+
+    /// The sentence that the summary of a run with a large energy error begins with.
+    fn caution(&self) -> Option<String> {
+        if self.energy_error_max <= CAREFUL {
+            return None;
         }
+        let percent = |share: f64| Digits(100.0 * share.abs());
+        let (at_the_end, at_worst) = (percent(self.energy_error), percent(self.energy_error_max));
+        let what = if self.energy_error.abs() <= CAREFUL {
+            format!("off by up to {at_worst} % of the largest kinetic energy on the way, {at_the_end} % at the end")
+        } else if self.energy_error < 0.0 {
+            format!("gone: {at_the_end} % of the largest kinetic energy was lost, at worst {at_worst} %")
+        } else {
+            format!("wrong: {at_the_end} % of the largest kinetic energy came from nowhere, at worst {at_worst} %")
+        };
+        let advice = self.carrier.unwrap_or_default().energy_advice();
+        Some(format!("energy is {what}, so the motion is not that of the scene; {advice}"))
     }
 }
 
@@ -126,6 +139,8 @@ impl Tally {
 pub(crate) struct Summary<'a> {
     status: Status,
     error: Option<&'a str>,
+    /// Said where the energy is off by more than a hundredth of the largest kinetic energy.
+    caution: Option<String>,
     scene: &'a str,
     integrator: &'a str,
     carried: &'a [Carried],
@@ -144,7 +159,7 @@ pub(crate) struct Summary<'a> {
     energy_error: f64,
     energy_error_max: f64,
     max_tension: Option<&'a MaxTension>,
-    warnings: &'a [String],
+    warnings: Vec<String>,
     output: Option<String>,
 }
 
@@ -153,6 +168,7 @@ impl<'a> Summary<'a> {
         Summary {
             status: origin.status,
             error: origin.error.as_deref(),
+            caution: tally.caution(),
             scene: &origin.scene,
             integrator: origin.integrator,
             carried: &tally.carried,
@@ -171,7 +187,7 @@ impl<'a> Summary<'a> {
             energy_error: tally.energy_error,
             energy_error_max: tally.energy_error_max,
             max_tension: tally.max_tension.as_ref(),
-            warnings: &tally.warnings,
+            warnings: tally.warnings(),
             output,
         }
     }
@@ -216,6 +232,9 @@ impl<'a> Summary<'a> {
         }
         if let Some(carriers) = self.carriers() {
             lines.insert(2, ("carried by", carriers));
+        }
+        if let Some(caution) = &self.caution {
+            lines.insert(0, ("caution", caution.clone()));
         }
         lines.extend(self.events.lines().into_iter().map(|line| ("events", line)));
         if self.start_moved > 0.0 {

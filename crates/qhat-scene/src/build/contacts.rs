@@ -1,5 +1,6 @@
 //! `[[constraints]]` that act on one side, and the check that the start respects them.
 
+use super::ids::Ids;
 use super::{Assembly, Places};
 use crate::model::contact::{Ball, Box, HalfSpace, Limits, Rope};
 use crate::model::{Id, Name, Named};
@@ -85,18 +86,19 @@ impl Assembly<'_, '_, '_> {
     }
 }
 
-/// Reports contacts that the start violates, and an integrator that cannot find events.
+/// Reports contacts that the start violates, an integrator that cannot find events, and an energy that is not finite.
 pub(super) fn check_start(
     system: &System,
     state: &State,
     settings: &Settings,
-    (tree, places): (&Node, &Places),
+    (tree, ids, places): (&Node, &Ids, &Places),
     report: &mut Report<'_>,
 ) {
     let Err(error) = qhat::check_start(system, state, settings) else { return };
     let place = match &error {
         StepError::NoEvents { .. } => tree.key("step").key("integrator").span.clone(),
         StepError::Penetrates { constraint, .. } => places.get(constraint).cloned().unwrap_or_default(),
+        StepError::EnergyNotFinite { particle, .. } => ids.origin(particle).unwrap_or_default(),
         _ => 0..0,
     };
     let message = report.fitted(&error.to_string());

@@ -93,7 +93,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         report.error(tree.key("step").span.clone(), error.to_string(), None);
         return None;
     }
-    contacts::check_start(&system, &state, &settings, (tree, &places), report);
+    contacts::check_start(&system, &state, &settings, (tree, &ids, &places), report);
     if !report.is_empty() {
         return None;
     }

@@ -15,7 +15,7 @@ use crate::constraint::Rows;
 use crate::linalg::block::vector;
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
-use crate::point::{dot, largest};
+use crate::point::{dot, larger, largest};
 use crate::settings::Settings;
 use crate::system::System;
 
@@ -118,7 +118,7 @@ impl EventFunctions<'_> {
             event_functions.extend([lambda[row] / no_force, friction, (turned - TURNED) / FAR]);
         }
         for (breakable, &broken) in system.contacts.breakables.iter().zip(&modes.broken) {
-            let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, f64::max);
+            let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, larger);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
             event_functions.push(if broken { f64::INFINITY } else { reserve });
         }

@@ -30,7 +30,9 @@ pub use workspace::Workspace;
 
 use crate::constraint::{Holds, NamedConstraint};
 use crate::contact::{close, deepest};
+use crate::energy;
 use crate::error::StepError;
+use crate::point::Motion;
 use crate::report::{Projection, StepReport};
 use crate::settings::{Integrator, Settings, SettingsError};
 use crate::space::in_dimension;
@@ -77,6 +79,9 @@ pub(crate) fn step_for(
         Integrator::Implicit => implicit::frame::<D>(&implicit::backward_euler::BACKWARD_EULER, frame, state),
         Integrator::Bdf2 => implicit::frame::<D>(&implicit::bdf2::BDF2, frame, state),
     })?;
+    if !report.energy.total().is_finite() {
+        check_energy(system, state)?;
+    }
     // Integrators that may leave a frame to another one report which of them advanced it.
     let integrator = match settings.integrator {
         Integrator::Auto | Integrator::Rattle => report.integrator,
@@ -106,13 +111,15 @@ pub(crate) fn check_finds_events(system: &System, settings: &Settings) -> Result
     }
 }
 
-/// Whether a simulation can start from a state as it is: the integrator locates the events that the system has, and no
-/// contact or limit is violated beyond the tolerance of a closed one.
+/// Whether a simulation can start from a state as it is: the integrator locates the events that the system has, kinetic
+/// and potential energy are finite, and no contact or limit is violated beyond the tolerance of a closed one.
 ///
 /// # Errors
-/// [`StepError::NoEvents`]; [`StepError::Penetrates`], of the constraint that is violated most.
+/// [`StepError::NoEvents`]; [`StepError::EnergyNotFinite`]; [`StepError::Penetrates`], of the constraint that is
+/// violated most.
 pub fn check_start(system: &System, state: &State, settings: &Settings) -> Result<(), StepError> {
     check_finds_events(system, settings)?;
+    check_energy(system, state)?;
     let violation = in_dimension!(system.dimension, D => deepest::<D>(system, state, settings.constraint_tolerance));
     match violation {
         Some((place, depth)) => {
@@ -149,6 +156,13 @@ pub fn project(
             close::<D>(system, state, settings, &mut workspace.equation);
         }
         Ok(projection)
+    })
+}
+
+/// Refuses a state whose kinetic or potential energy is not finite, with the name of a particle.
+pub(crate) fn check_energy(system: &System, state: &State) -> Result<(), StepError> {
+    in_dimension!(system.dimension, D => {
+        energy::check_finite(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, state.t)
     })
 }
 

@@ -15,7 +15,7 @@ use crate::contact::{NearestStart, TOUCH_DISTANCE};
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
 use crate::multiplier::Equation;
-use crate::point::{Motion, block, dot, largest};
+use crate::point::{Motion, block, dot, larger, largest};
 use crate::report::Projection;
 use crate::settings::Settings;
 use crate::space::ParticleId;
@@ -91,7 +91,7 @@ impl<const D: usize> Projector<'_, D> {
         self.constrain();
         let start = self.q.to_vec();
         let rigid = (0..m).filter(|&row| system.softness[row].is_rigid());
-        let before = rigid.fold(0.0, |most: f64, row| most.max(self.equation.rows.C[row].abs()));
+        let before = rigid.fold(0.0, |most, row| larger(most, self.equation.rows.C[row].abs()));
         for step in [Step::Independent, Step::LeastSquares] {
             self.q.copy_from_slice(&start);
             self.constrain();
@@ -196,9 +196,9 @@ impl<const D: usize> Projector<'_, D> {
         self.constrain();
         let Projector { system, equation, qd, .. } = self;
         let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
-        let fastest = fastest.fold(0.0, f64::max).sqrt();
+        let fastest = fastest.fold(0.0, larger).sqrt();
         let rows = equation.rows.Cd.iter().zip(&system.row_scale);
-        let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, f64::max);
+        let rate = rows.map(|(Cd, scale)| Cd.abs() / scale).fold(0.0, larger);
         if rate * system.extent > CONSISTENT_RATE * fastest {
             equation.factor::<D>(system, 0.0);
             let mut nu = vec![0.0; equation.rows.Cd.len()];
@@ -225,5 +225,5 @@ impl<const D: usize> Projector<'_, D> {
 /// The largest distance between two blocks of D numbers.
 fn farthest<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
     let distances = a.chunks_exact(D).zip(b.chunks_exact(D));
-    distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, f64::max).sqrt()
+    distances.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()).fold(0.0, larger).sqrt()
 }

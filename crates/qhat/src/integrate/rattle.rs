@@ -87,8 +87,8 @@ struct RattleStepper<'a, 'f, const D: usize> {
 /// Advances the state by one frame.
 pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) -> Result<StepReport, StepError> {
     let (start, length, factorizations) = (state.t, frame.length, frame.factorizations());
-    let mut substeps = Substeps::new(frame, state);
     let carry = state.carry.take();
+    let mut substeps = Substeps::new(frame, state).steadily(carry.as_ref());
     let lambda = adaptive::begin::<D>(frame, state, carry);
     frame.workspace.equation.solver.memory.forget();
     let mut stepper = RattleStepper::<D> { frame, lambda };

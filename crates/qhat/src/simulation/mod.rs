@@ -7,8 +7,8 @@ mod look;
 
 use crate::energy::Energy;
 use crate::error::StepError;
-use crate::integrate::{Workspace, check_start, project, step, step_for};
-use crate::report::{Projection, StepReport};
+use crate::integrate::{Workspace, check_energy, check_start, project, step_for};
+use crate::report::{Projection, StepReport, WarningLog};
 use crate::settings::{Settings, SettingsError};
 use crate::state::State;
 use crate::system::System;
@@ -27,6 +27,7 @@ pub struct Simulation {
     start: State,
     projection: Projection,
     account: EnergyAccount,
+    log: WarningLog,
 }
 
 impl Simulation {
@@ -43,6 +44,7 @@ impl Simulation {
             start: state.clone(),
             projection: Projection::default(),
             account: EnergyAccount::default(),
+            log: WarningLog::default(),
             system,
             state,
             settings,
@@ -54,11 +56,14 @@ impl Simulation {
     fn begin(&mut self) -> Result<(), StepError> {
         self.projection = Projection::default();
         check_start(&self.system, &self.state, &self.settings)?;
+        // Before the projection, whose error would name a constraint.
+        check_energy(&self.system, &self.state)?;
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
         check_start(&self.system, &self.state, &self.settings)?;
         self.account = EnergyAccount::open(&self.system, &self.state);
+        self.log = WarningLog::default();
         Ok(())
     }
 
@@ -67,9 +72,9 @@ impl Simulation {
     /// # Errors
     /// See [`StepError`]; the last good state stays.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
-        let report = step(&self.system, &mut self.state, &self.settings, &mut self.workspace);
-        self.account.note(&self.energy());
-        report
+        let report = self.step_by(self.settings.h)?;
+        self.log.note(&report.warnings, self.state.time());
+        Ok(report)
     }
 
     /// Advances by a duration \[s\]: one frame with an adaptive integrator, steps of h with another.
@@ -77,17 +82,20 @@ impl Simulation {
     /// # Errors
     /// [`SettingsError::FrameNotMultiple`] if steps of h do not fill the duration; else as [`Simulation::step`].
     pub fn advance(&mut self, duration: f64) -> Result<StepReport, StepError> {
-        if self.settings.integrator.is_adaptive() {
-            let report = step_for(&self.system, &mut self.state, &self.settings, duration, &mut self.workspace);
-            self.account.note(&self.energy());
-            return report;
-        }
-        let steps = steps_in(duration, self.settings.h)?;
+        let is_adaptive = self.settings.integrator.is_adaptive();
+        let (steps, h) =
+            if is_adaptive { (1, duration) } else { (steps_in(duration, self.settings.h)?, self.settings.h) };
         let mut report = StepReport::default();
-        for _ in 0..steps {
-            report.absorb(self.step()?);
-        }
-        Ok(report)
+        let outcome = (0..steps).try_for_each(|_| self.step_by(h).map(|step| report.absorb(step)));
+        self.log.note(&report.warnings, self.state.time());
+        outcome.map(|()| report)
+    }
+
+    /// One step or frame of h [s], booked in the energy account.
+    fn step_by(&mut self, h: f64) -> Result<StepReport, StepError> {
+        let mut report = step_for(&self.system, &mut self.state, &self.settings, h, &mut self.workspace);
+        self.account.note(&self.energy(), self.state.time(), report.as_mut().ok());
+        report
     }
 
     /// Goes back to the start, with no particle grabbed; settings, forces and forms stay as they are now.
@@ -135,6 +143,12 @@ impl Simulation {
     /// The largest size of the missing energy after any step so far, relative to the same \[1\].
     pub fn energy_error_max(&self) -> f64 {
         self.account.largest_error()
+    }
+
+    /// The warnings of all steps since the start, each told once, with the number of frames that raised it and the
+    /// times of the first and the last of them.
+    pub fn warnings(&self) -> &WarningLog {
+        &self.log
     }
 }
 

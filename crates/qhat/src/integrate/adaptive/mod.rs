@@ -9,6 +9,7 @@ pub(crate) mod control;
 mod crossing;
 pub(crate) mod dop853;
 pub(crate) mod dopri5;
+mod pace;
 pub(crate) mod pair;
 pub(crate) mod pair_frame;
 mod substeps;

@@ -1,19 +1,20 @@
 //! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
 
 use super::acceptance::{Refusal, accepts};
+use super::pace::{Pace, Steady};
 use super::{Attempt, Outcome, Stepper, control};
-use crate::drift::{Drift, worst_row};
+use crate::drift::{Drift, attainable, worst_row};
 use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
 use crate::multiplier::APPROACH;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::space::in_dimension;
-use crate::state::{Carry, State};
+use crate::state::{Carry, State, SteadyMemory};
 use crate::system::System;
 
 /// Length of a substep, in frames, below which shortening it does not help.
@@ -60,8 +61,7 @@ pub(crate) struct Substeps<'a> {
     /// Substeps that may be tried, rejected ones included.
     limit: usize,
     tried: usize,
-    /// The substep to try next [s].
-    proposed: f64,
+    pace: Pace,
     pub(crate) report: StepReport,
     /// The watch of the workspace, until `finish` or `fail` puts it back.
     watch: Option<TensionWatch>,
@@ -73,9 +73,16 @@ impl<'a> Substeps<'a> {
         let watch = frame.workspace.watch.take();
         let Frame { system, settings, length, .. } = *frame;
         let report = StepReport { smallest_substep: length, ..StepReport::default() };
-        let proposed = state.carry.as_ref().map_or(length, |carry| carry.substep);
+        let pace = Pace::Free(state.carry.as_ref().map_or(length, |carry| carry.substep));
         let (done, tried, limit) = (0.0, 0, usize::MAX);
-        Substeps { system, settings, start: state.t, length, done, limit, tried, proposed, report, watch }
+        Substeps { system, settings, start: state.t, length, done, limit, tried, pace, report, watch }
+    }
+
+    /// The same at a steady pace, which goes on as the carry of the state says.
+    pub(crate) fn steadily(self, carry: Option<&Carry>) -> Self {
+        let allowed = carry.map_or(f64::INFINITY, |carry| carry.substep);
+        let memory = carry.map(|carry| carry.steady.clone()).unwrap_or_default();
+        Substeps { pace: Pace::Steady(Steady::new(self.length, allowed, memory)), ..self }
     }
 
     /// The same with at most `limit` substeps, or as many as show that these will not do.
@@ -96,15 +103,17 @@ impl<'a> Substeps<'a> {
                 return Ok(End::OutOfWork);
             }
             let longest = method.longest(state);
-            let across = method.across(state, self.proposed.min(longest), self.length - self.done);
+            let across = match self.pace {
+                Pace::Free(next) => method.across(state, next.min(longest), self.length - self.done),
+                Pace::Steady(_) => None,
+            };
             let substep = self.propose(longest, across);
             let outcome = method.attempt(state, substep.h, substep.end);
             let refusal = if let Outcome::Refused(refusal) = outcome { Some(refusal) } else { None };
             match self.judge(outcome, method)? {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
-                    self.reject(&substep, growth);
-                    if self.is_too_short() {
+                    if self.reject(&substep, growth) < SHORTEST * self.length {
                         return Err(self.failure(method, state, substep.end, refusal));
                     }
                     method.turn_back(state);
@@ -133,8 +142,15 @@ impl<'a> Substeps<'a> {
     fn propose(&mut self, longest: f64, across: Option<f64>) -> Proposal {
         self.tried += 1;
         let remaining = self.length - self.done;
-        let h = across.map_or_else(|| fit(self.proposed.min(longest), remaining), |h| h.min(remaining));
-        let done = if h == self.length - self.done { self.length } else { self.done + h };
+        let whole = |h: f64, done: f64| if h == remaining { self.length } else { done };
+        let (h, done) = match (&mut self.pace, across) {
+            (Pace::Free(_), Some(h)) => (h.min(remaining), whole(h.min(remaining), self.done + h)),
+            (Pace::Free(next), None) => {
+                let h = fit(next.min(longest), remaining);
+                (h, whole(h, self.done + h))
+            }
+            (Pace::Steady(steady), _) => steady.propose(longest),
+        };
         Proposal { h, is_placed: across.is_some(), end: self.start + done, done }
     }
 
@@ -155,19 +171,25 @@ impl<'a> Substeps<'a> {
         Ok(if is_accepted { Verdict::Accepted { attempt, growth } } else { Verdict::Rejected { growth } })
     }
 
-    fn reject(&mut self, substep: &Proposal, growth: f64) {
+    /// Books a rejection. Returns the length to try next [s].
+    fn reject(&mut self, substep: &Proposal, growth: f64) -> f64 {
         self.report.rejected += 1;
-        self.proposed = substep.h * growth;
-    }
-
-    fn is_too_short(&self) -> bool {
-        self.proposed < SHORTEST * self.length
+        match &mut self.pace {
+            Pace::Free(next) => {
+                *next = substep.h * growth;
+                *next
+            }
+            Pace::Steady(steady) => steady.shorten(),
+        }
     }
 
     /// The substep as it was met: shorter than proposed if an event ends it.
     fn accept(&mut self, substep: Proposal, attempt: &Attempt, growth: f64) -> Proposal {
-        let next = substep.h * growth;
-        self.proposed = if substep.is_placed { next.max(self.proposed) } else { next };
+        match &mut self.pace {
+            Pace::Free(next) if substep.is_placed => *next = next.max(substep.h * growth),
+            Pace::Free(next) => *next = substep.h * growth,
+            Pace::Steady(steady) => steady.accept(attempt.error, self.settings.tolerance),
+        }
         if attempt.h < substep.h {
             let done = self.done + attempt.h;
             return Proposal { h: attempt.h, end: self.start + done, done, ..substep };
@@ -198,7 +220,7 @@ impl<'a> Substeps<'a> {
     }
 
     /// The error after the shortest substep was not kept: it names the particle of the tried motion that is not finite,
-    /// or the row with the largest residual.
+    /// the row with the largest residual, or where all rows are met the particle with the largest acceleration.
     fn failure(&self, method: &impl Stepper, state: &State, end: f64, refusal: Option<Refusal>) -> StepError {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
@@ -209,21 +231,28 @@ impl<'a> Substeps<'a> {
             }
             let mut rows = system.empty_rows();
             system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
-            let (worst, relative) = worst_row(system, &rows.C);
-            let row = || system.row_names[worst].clone();
-            match (refusal, rows.C.get(worst)) {
+            let (worst, off) = worst_row(system, &rows.C);
+            let is_off = off > attainable(system, self.settings, largest(&tried.q));
+            match refusal {
+                Some(Refusal::Balance) => return StepError::OutOfBalance { time },
+                Some(Refusal::Jump) if is_off => {
+                    let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
+                    return StepError::Jumps { time, row, residual };
+                }
+                None if is_off && off.is_finite() => {
+                    let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
+                    return StepError::NotSatisfied { time, row, residual };
+                }
+                _ => {}
+            }
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
+            match energy::most_accelerated(system, motion) {
+                Some((particle, acceleration)) => {
+                    let particle = system.particle_names[particle.0].clone();
+                    StepError::RanAway { time, particle, acceleration }
+                }
                 // Sums of finite numbers may overflow; then no particle is to blame more than another.
-                (_, None) => {
-                    let particle = system.particle_names.first().cloned().unwrap_or_default();
-                    StepError::NotFinite { time, particle }
-                }
-                (Some(Refusal::Jump), Some(&residual)) => StepError::Jumps { time, row: row(), residual },
-                (Some(Refusal::Balance), Some(_)) => StepError::OutOfBalance { time },
-                (None, Some(_)) if relative.is_infinite() => {
-                    let particle = system.particle_names.first().cloned().unwrap_or_default();
-                    StepError::NotFinite { time, particle }
-                }
-                (None, Some(&residual)) => StepError::NotSatisfied { time, row: row(), residual },
+                None => StepError::NotFinite { time, particle: system.particle_names.first().cloned().unwrap_or_default() },
             }
         })
     }
@@ -250,8 +279,11 @@ impl<'a> Substeps<'a> {
             }
             None => (Vec::new(), 0.0, false),
         };
-        state.carry =
-            Some(Carry { lambda, substep: self.proposed, is_nearly_singular, previous: None, drives, resting: 0 });
+        let (substep, steady) = match self.pace {
+            Pace::Free(next) => (next, SteadyMemory::default()),
+            Pace::Steady(steady) => (steady.allowed, steady.memory),
+        };
+        state.carry = Some(Carry { lambda, substep, steady, is_nearly_singular, previous: None, drives, resting: 0 });
         self.report.energy = energy::energy(self.system, state);
         self.report
     }

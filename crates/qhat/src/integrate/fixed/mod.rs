@@ -65,7 +65,13 @@ pub(crate) fn run<const D: usize>(
 fn examine<const D: usize>(frame: &mut Frame<'_>, t: f64) -> Result<Drift, StepError> {
     let Frame { system, workspace, length: h, .. } = frame;
     check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
-    workspace.equation.constrain(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + *h });
+    let motion = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + *h };
+    // Velocities overflow in T long before they overflow themselves.
+    energy::check_finite(system, motion, t).map_err(|error| match error {
+        StepError::EnergyNotFinite { time, particle, .. } => StepError::NotFinite { time, particle },
+        other => other,
+    })?;
+    workspace.equation.constrain(system, motion);
     let drift = drift::<D>(system, &workspace.equation.rows, &workspace.equation.inactive, &workspace.q);
     if drift.relative > DIVERGED {
         let row = system.row_names[drift.worst_row].clone();

@@ -11,9 +11,10 @@
 //! Dynamics (2015).
 
 use super::{Base, Formula};
+use crate::settings::Integrator;
 use crate::state::State;
 
-pub(crate) const BACKWARD_EULER: Formula = Formula { first: base, second: None };
+pub(crate) const BACKWARD_EULER: Formula = Formula { integrator: Integrator::Implicit, first: base, second: None };
 
 pub(crate) fn base(state: &State, h: f64, base: &mut Base) {
     base.q.copy_from_slice(&state.q);

@@ -11,9 +11,11 @@
 //! Source: Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I, III.5.
 
 use super::{Base, Formula, backward_euler};
+use crate::settings::Integrator;
 use crate::state::{Previous, State};
 
-pub(crate) const BDF2: Formula = Formula { first: backward_euler::base, second: Some(base) };
+pub(crate) const BDF2: Formula =
+    Formula { integrator: Integrator::Bdf2, first: backward_euler::base, second: Some(base) };
 
 fn base(state: &State, previous: &Previous, h: f64, base: &mut Base) {
     let ratio = h / previous.h;

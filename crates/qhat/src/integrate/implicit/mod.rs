@@ -15,6 +15,7 @@ mod graph;
 mod matrix;
 mod newton;
 mod passes;
+mod reach;
 mod residual;
 mod stiffness;
 #[cfg(test)]
@@ -25,15 +26,17 @@ pub(crate) use newton::Base;
 
 use super::check_finite;
 use super::frame::Frame;
-use crate::drift::drift;
+
+use crate::drift::{attainable, drift};
 use crate::energy;
 use crate::error::StepError;
-use crate::point::Motion;
+use crate::point::{Motion, largest};
 use crate::report::{Solver, StepReport, Warning};
-use crate::settings::Feedback;
-use crate::state::{Carry, Previous, State};
+use crate::settings::{Feedback, Integrator};
+use crate::state::{Carry, Previous, State, SteadyMemory};
 use crate::system::System;
 use newton::{Ending, Newton, Tried};
+use residual::exceeds;
 
 /// Newton iterations of one step. From q + h q̇ most steps take a few, and factor the matrix four times or less
 /// (`tests/verify_implicit.rs`); the crack of a whip and a hanging net take more. Beyond this number two halves of the
@@ -49,6 +52,8 @@ const PARTS: u32 = 4096;
 
 /// A method: how it writes q*, q̇* and h_e for a step of h.
 pub(crate) struct Formula {
+    /// The integrator that it belongs to.
+    pub(crate) integrator: Integrator,
     /// From the state alone: backward Euler.
     pub(crate) first: fn(&State, f64, &mut Base),
     /// From the state and the one before, for a method of second order.
@@ -76,6 +81,7 @@ pub(crate) fn frame<const D: usize>(
     state: &mut State,
 ) -> Result<StepReport, StepError> {
     let (system, length) = (frame.system, frame.length);
+    reach::check::<D>(system, state, formula.integrator, length)?;
     let mut scratch = frame.workspace.implicit.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
     let before = frame.factorizations();
     frame.workspace.set_modes(system, state);
@@ -85,7 +91,9 @@ pub(crate) fn frame<const D: usize>(
         let (lambda, is_nearly_singular) = (equation.lambda.clone(), equation.is_nearly_singular());
         state.rank.clone_from(&equation.rank);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
-        state.carry = Some(Carry { lambda, substep: length, is_nearly_singular, previous: None, drives, resting: 0 });
+        let steady = SteadyMemory::default();
+        state.carry =
+            Some(Carry { lambda, substep: length, steady, is_nearly_singular, previous: None, drives, resting: 0 });
     }
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
@@ -217,15 +225,22 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// The error after the shortest step did not converge: the worst row, or without rows a particle.
+    /// The error after the shortest step did not converge: the worst row, or where all rows are met the particle with
+    /// the largest acceleration.
     fn failure(&self, state: &State, ending: &Ending) -> StepError {
-        let (system, row) = (self.frame.system, ending.miss.row);
-        match self.frame.workspace.equation.rows.C.get(row) {
-            Some(&residual) => StepError::NotSatisfied { time: state.t, row: system.row_names[row].clone(), residual },
-            None => StepError::NotFinite {
-                time: state.t,
-                particle: system.particle_names.first().cloned().unwrap_or_default(),
-            },
+        let (system, time) = (self.frame.system, state.t);
+        let within = attainable(system, self.frame.settings, largest(&self.frame.workspace.q));
+        if let Some(&residual) = self.frame.workspace.equation.rows.C.get(ending.miss.row)
+            && exceeds(ending.miss.relative, within)
+        {
+            return StepError::NotSatisfied { time, row: system.row_names[ending.miss.row].clone(), residual };
+        }
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
+        match energy::most_accelerated(system, motion) {
+            Some((particle, acceleration)) => {
+                StepError::RanAway { time, particle: system.particle_names[particle.0].clone(), acceleration }
+            }
+            None => StepError::NotFinite { time, particle: String::new() },
         }
     }
 }

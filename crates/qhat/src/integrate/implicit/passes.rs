@@ -3,7 +3,7 @@
 use super::matrix::Matrix;
 use crate::linalg::NONE;
 use crate::linalg::block::vector;
-use crate::point::dot;
+use crate::point::{dot, larger};
 use crate::system::System;
 
 /// Passes of one solve: where rows depend on each other but for little, each gains one digit or two.
@@ -70,7 +70,7 @@ impl Matrix {
     /// The largest change of a multiplier that acts through a penalty, times its ε.
     fn largest(&self, s: &[f64]) -> f64 {
         let rows = self.graph.penalties.iter().zip(&self.epsilon);
-        rows.map(|(&row, epsilon)| (epsilon * s[row]).abs()).fold(0.0, f64::max)
+        rows.map(|(&row, epsilon)| (epsilon * s[row]).abs()).fold(0.0, larger)
     }
 
     /// s ← the right-hand side that a pass with the result s has left: −ε s, and zero for rows without a penalty.

@@ -18,7 +18,7 @@ use crate::system::System;
 
 /// Rounding of a force, relative to the size of its terms: roundings add up over the terms, and this many cover
 /// chains under loads of 1e9 beads.
-const ROUNDOFF: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDOFF: f64 = 16.0 * f64::EPSILON;
 
 /// Part of the size of the forces on a particle to which they must balance. A short step hardly moves anything,
 /// whatever the forces; with this, a system at rest stays where it should.

@@ -5,7 +5,7 @@
 
 use super::newton::{Base, Newton, Tried};
 use crate::energy;
-use crate::point::{Motion, block, dot, largest};
+use crate::point::{Motion, block, dot, larger, largest};
 
 /// Passes of one projection. The factor belongs to a q near by: each pass gains as many digits as J has in common
 /// there, four or more.
@@ -36,7 +36,7 @@ impl Newton {
                 let terms = entries.map(|e| dot(rows.J.entry::<D>(e), block(qd, system.layout.particle[e])));
                 let rate = terms.sum::<f64>() + rows.Ct[row];
                 self.s[row] = if is_active { -rate } else { 0.0 };
-                worst = worst.max(self.s[row].abs() * self.per_scale[row]);
+                worst = larger(worst, self.s[row].abs() * self.per_scale[row]);
             }
             if worst * system.extent <= CONSISTENT * fastest {
                 break;

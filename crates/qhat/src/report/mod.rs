@@ -1,7 +1,12 @@
 //! Reports of steps: substeps, errors, events and warnings.
 
+mod warning;
+
+pub use warning::{RepeatedWarning, Warning, WarningLog};
+
 use crate::drift::Drift;
 use crate::energy::Energy;
+use crate::point::larger;
 use crate::settings::Integrator;
 use crate::space::ConstraintId;
 use std::fmt;
@@ -130,9 +135,9 @@ impl StepReport {
         if h > 0.0 {
             self.smallest_substep = self.smallest_substep.min(h);
         }
-        self.max_residual = self.max_residual.max(drift.residual);
-        self.max_residual_rate = self.max_residual_rate.max(drift.residual_rate);
-        self.max_relative_length_error = self.max_relative_length_error.max(drift.relative_length);
+        self.max_residual = larger(self.max_residual, drift.residual);
+        self.max_residual_rate = larger(self.max_residual_rate, drift.residual_rate);
+        self.max_relative_length_error = larger(self.max_relative_length_error, drift.relative_length);
     }
 
     /// Takes the next step's report into this one.
@@ -143,9 +148,9 @@ impl StepReport {
         self.rejected += next.rejected;
         self.factorizations += next.factorizations;
         self.iterations += next.iterations;
-        self.max_residual = self.max_residual.max(next.max_residual);
-        self.max_residual_rate = self.max_residual_rate.max(next.max_residual_rate);
-        self.max_relative_length_error = self.max_relative_length_error.max(next.max_relative_length_error);
+        self.max_residual = larger(self.max_residual, next.max_residual);
+        self.max_residual_rate = larger(self.max_residual_rate, next.max_residual_rate);
+        self.max_relative_length_error = larger(self.max_relative_length_error, next.max_relative_length_error);
         self.max_tension = MaxTension::larger(self.max_tension, next.max_tension);
         self.energy = next.energy;
         (self.integrator, self.solver) = (next.integrator, next.solver);
@@ -155,19 +160,11 @@ impl StepReport {
         }
     }
 
-    /// Adds a warning unless it is there already; of spent budgets the worst stays.
+    /// Adds a warning; of two that are alike the worse stays.
     pub(crate) fn warn(&mut self, warning: Warning) {
-        if let Warning::BudgetSpent { relative, .. } = warning {
-            let same = |other: &&mut Warning| matches!(other, Warning::BudgetSpent { .. });
-            if let Some(former) = self.warnings.iter_mut().find(same) {
-                if matches!(former, Warning::BudgetSpent { relative: before, .. } if *before < relative) {
-                    *former = warning;
-                }
-                return;
-            }
-        }
-        if !self.warnings.contains(&warning) {
-            self.warnings.push(warning);
+        match self.warnings.iter_mut().find(|former| former.is_like(&warning)) {
+            Some(former) => former.keep_worse(warning),
+            None => self.warnings.push(warning),
         }
     }
 }
@@ -193,86 +190,6 @@ impl fmt::Display for Solver {
             Solver::Chains => "lanes",
             Solver::EndOfStep => "end of step",
         })
-    }
-}
-
-/// A condition that did not stop the step.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Warning {
-    /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
-    Singular,
-    /// Rows whose gradient vanishes here, so that no multiplier can act through them.
-    NoGradient {
-        /// Their names.
-        rows: Vec<String>,
-    },
-    /// Auto went over to bdf2: accurate substeps would have taken more work than a frame is allowed.
-    TooStiff {
-        /// The number of substeps that the frame is allowed.
-        substeps: usize,
-    },
-    /// RATTLE could not meet the constraints with substeps of any length: dopri5 carried the frame on.
-    HandedOver {
-        /// t where it took over \[s\].
-        time: f64,
-    },
-    /// Contacts that share a particle were struck at once, and share the blow as Newton's law of impact has it.
-    SharedImpact {
-        /// t of the impact \[s\].
-        time: f64,
-        /// Two of the constraints.
-        constraints: [String; 2],
-    },
-    /// The frame budget was spent before the step was solved: it ends with the nearest that was reached.
-    BudgetSpent {
-        /// t of the end of the step \[s\].
-        time: f64,
-        /// Newton iterations of the frame.
-        iterations: usize,
-        /// The worst row.
-        row: String,
-        /// Its |C| relative to its own scale.
-        relative: f64,
-    },
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Warning::Singular => f.write_str(
-                "some constraints repeat what others say, so A = J W Jᵀ is singular: the motion and the total force \
-                 are unique, the single multipliers are not, and the smallest that do it are shown. `qhat check` \
-                 counts the redundant rows",
-            ),
-            Warning::NoGradient { rows } => write!(
-                f,
-                "the gradient of {} is zero here, so no force can hold it, and A = J W Jᵀ is singular: use the modern \
-                 form of the constraint, or start elsewhere (diagonal drag hides this)",
-                rows.join(", ")
-            ),
-            Warning::TooStiff { substeps } => write!(
-                f,
-                "the motion is too stiff for the {substeps} substeps that frame_work and max_substeps allow a frame, \
-                 so bdf2 carries it: rods hold, fast oscillations are damped. Raise frame_work to follow them"
-            ),
-            Warning::HandedOver { time } => write!(
-                f,
-                "rattle could not meet the constraints at t = {time:.4} s with a substep of any length, so dopri5 \
-                 finished the frame. If this comes back, use dop853"
-            ),
-            Warning::SharedImpact { time, constraints: [one, other] } => write!(
-                f,
-                "`{one}` and `{other}` were struck at once at t = {time:.4} s, so they share the blow. Where it should \
-                 pass from one to the next, as in Newton's cradle, leave a gap of 1e-6 m between them"
-            ),
-            Warning::BudgetSpent { time, iterations, row, relative } => write!(
-                f,
-                "the frame budget was spent at t = {time:.4} s after {iterations} Newton iterations, and `{row}` is \
-                 off by {relative:.1e} of its size: raise frame_budget, or shorten h"
-            ),
-        }
     }
 }
 
