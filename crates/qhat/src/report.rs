@@ -88,6 +88,8 @@ pub struct MaxTension {
     pub link: ConstraintId,
     /// t \[s\].
     pub time: f64,
+    /// Whether the tension is unique; if not, other tensions of redundant rods would do the same.
+    pub is_unique: bool,
 }
 
 impl MaxTension {
@@ -201,7 +203,8 @@ impl fmt::Display for Solver {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Warning {
-    /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
+    /// A is singular: rows depend on each other. λ is the share of [`Distance::stiffness`](crate::Distance::stiffness);
+    /// Q̂ and the motion are unique.
     Singular,
     /// Rows whose gradient vanishes here, so that no multiplier can act through them.
     NoGradient {

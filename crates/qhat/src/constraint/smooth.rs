@@ -43,6 +43,11 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
+    /// L/EA [m/N] of a rod whose length is driven; zero for every other kind.
+    fn flexibility(&self, _t: f64) -> f64 {
+        0.0
+    }
+
     /// Why the constraint has no meaning in d dimensions, in words.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
@@ -161,6 +166,10 @@ impl<S: Smooth> Holds for S {
 
     fn scale(&self, extent: f64) -> f64 {
         Smooth::scale(self, extent)
+    }
+
+    fn flexibility(&self, _: usize, t: f64) -> f64 {
+        Smooth::flexibility(self, t)
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {

@@ -13,6 +13,7 @@ mod memory;
 mod pushes;
 mod reaction;
 mod rhs;
+mod share;
 mod singular;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ mod tests;
 pub(crate) use factor::{MultiplierSolver, SolveFor};
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;
+pub(crate) use share::{RowsToShare, Share};
 
 use crate::constraint::Rows;
 use crate::report::Warning;
