@@ -162,7 +162,7 @@ fn add_ellipse(ellipse: &OnEllipse, shapes: &mut Shapes<'_>) {
 
 /// A sphere at rest is drawn as a circle or bowl, and a sphere that moves as a rod whose length changes.
 fn add_sphere(sphere: &OnSphere, shapes: &mut Shapes<'_>) {
-    let OnSphere { particle, center, radius } = sphere;
+    let OnSphere { particle, center, radius, .. } = sphere;
     let at_rest = matches!(radius, Driven::Constant(_)) && matches!(center, Anchor::Point(_));
     let shape = match (at_rest, shapes.system.dimension()) {
         (true, 2) => Shape::new(ShapeKind::Ring, shapes.of, []).at([[0.0, 0.0, 1.0]]),

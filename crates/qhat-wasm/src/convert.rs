@@ -95,7 +95,7 @@ pub(crate) fn report(report: &qhat::StepReport, log: &WarningLog) -> StepReport 
 
 fn max_tension(largest: qhat::MaxTension) -> JsValue {
     let record = Record::new().with("tension", largest.tension).with("constraint", largest.link.index() as f64);
-    record.with("time", largest.time).finish()
+    record.with("time", largest.time).with("is_unique", largest.is_unique).finish()
 }
 
 /// An event: its kind, its constraint and its time; for an impact also the closing speed.
@@ -148,6 +148,8 @@ pub(crate) fn terms(terms: &qhat::Terms) -> Terms {
         .with("constraint_forces", vector(&terms.constraint_forces))
         .with("accelerations", vector(&terms.accelerations))
         .with("tension", vector(&terms.tension))
+        .with("tension_is_unique", list(terms.tension_is_unique.iter().copied()))
+        .with("multiplier_is_unique", list(terms.multiplier_is_unique.iter().copied()))
         .with("is_open", list(terms.is_open.iter().copied()))
         .with("rank", rank)
         .with("warnings", strings(&terms.warnings))

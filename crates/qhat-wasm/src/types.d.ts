@@ -182,8 +182,9 @@ export interface StepReport {
   max_residual: number;
   max_residual_rate: number;
   max_relative_length_error: number;
-  /** the largest tension (positive) or thrust, N, with its constraint and time, s; null if it is not recorded */
-  max_tension: { tension: number; constraint: number; time: number } | null;
+  /** the largest tension (positive) or thrust, N, with its constraint and time, s, and whether it is unique; null if it is not
+   * recorded */
+  max_tension: { tension: number; constraint: number; time: number; is_unique: boolean } | null;
   energy: Energy;
   /** the integrator of this step; with auto, the integrator that auto chose */
   integrator: IntegratorName;
@@ -230,6 +231,10 @@ export interface Terms {
   accelerations: Float64Array;
   /** N, one for each link: positive if it pulls its ends together, 0 while slack */
   tension: Float64Array;
+  /** one for each link: false if redundant links could carry the load in other ways */
+  tension_is_unique: boolean[];
+  /** one for each row: false if redundant rows could exert the force in other ways */
+  multiplier_is_unique: boolean[];
   /** one for each row: true if the row is inactive (an open contact, a broken constraint) */
   is_open: boolean[];
   /** the rank of A; null if A is singular and too large to count its rank */

@@ -54,6 +54,11 @@ pub struct Terms {
     /// Signed tension of every link ([`System::links`]: rods, ropes, struts), as applied \[N\]; positive if it pulls
     /// its ends together.
     pub tension: Vec<f64>,
+    /// For each link whether its tension is unique: whether no other tensions do the same. A tension that is not unique
+    /// is the share of elastic rods in the limit of infinite stiffness.
+    pub tension_is_unique: Vec<bool>,
+    /// For each row whether its multiplier is unique, m.
+    pub multiplier_is_unique: Vec<bool>,
     /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.
     pub is_open: Vec<bool>,
     /// Rank of A; `None` where A is singular and too large for the rank to be counted.
@@ -91,7 +96,7 @@ const fn row(
 }
 
 /// The symbols of [`Terms`], in the order of its fields.
-pub const NOTATION: [Notation; 21] = [
+pub const NOTATION: [Notation; 23] = [
     row("t", "t", "time", "1", "s", "state.rs"),
     row("q", "q", "positions", "N", "m", "state.rs"),
     row("q̇", "qd", "velocities", "N", "m/s", "state.rs"),
@@ -111,6 +116,8 @@ pub const NOTATION: [Notation; 21] = [
     row("Q̂", "Q_hat", "constraint_forces", "N", "N", "multiplier/reaction.rs"),
     row("q̈", "qdd", "accelerations", "N", "m/s²", "multiplier/reaction.rs"),
     row("T", "tension", "tension", "links", "N", "constraint/link.rs"),
+    row("T unique", "is_unique", "tension_is_unique", "links", "1", "multiplier/share/mod.rs"),
+    row("λ unique", "is_unique", "multiplier_is_unique", "m", "1", "multiplier/share/mod.rs"),
     row("λ off", "off", "is_open", "m", "1", "modes.rs"),
     row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
 ];
@@ -135,7 +142,9 @@ impl Workspace {
     /// Every symbol at a state. Integrators that project see the bare equation: their feedback is none.
     pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
         let tension = self.tension(system, state, feedback);
-        collect(system, state, self.equation().clone(), tension)
+        let terms = collect(system, state, self.equation().clone(), tension);
+        let (links, rows) = (self.tension_is_unique(system), self.multiplier_is_unique().to_vec());
+        Terms { tension_is_unique: links, multiplier_is_unique: rows, ..terms }
     }
 }
 
@@ -166,6 +175,8 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         constraint_forces: equation.Q_hat,
         accelerations: equation.qdd,
         tension,
+        tension_is_unique: Vec::new(),
+        multiplier_is_unique: Vec::new(),
         is_open,
         rank,
         warnings,

@@ -35,6 +35,7 @@ mod order;
 mod reactions;
 mod refused;
 mod serde;
+mod share;
 mod snapshot;
 mod softness;
 mod step_size;

@@ -45,6 +45,8 @@ struct MaxTension {
     link: String,
     /// \[s\].
     time: f64,
+    /// Whether no other tensions of redundant links would do the same.
+    is_unique: bool,
 }
 
 /// The number of frames that one integrator advanced with one solver of the multipliers.
@@ -85,7 +87,8 @@ impl Tally {
             && self.max_tension.as_ref().is_none_or(|former| former.tension.abs() < largest.tension.abs())
         {
             let link = system.constraint_of(largest.link).name.clone();
-            self.max_tension = Some(MaxTension { tension: largest.tension, link, time: largest.time });
+            let qhat::MaxTension { tension, time, is_unique, .. } = largest;
+            self.max_tension = Some(MaxTension { tension, link, time, is_unique });
         }
         report.events.iter().for_each(|event| self.events.note(event));
         self.log.note(&report.warnings, time);
@@ -226,8 +229,9 @@ impl<'a> Summary<'a> {
                 ),
             ),
         ];
-        if let Some(MaxTension { tension, link, time }) = self.max_tension {
-            let line = format!("at most {} N in {link} at {time:.2} s", significant(*tension));
+        if let Some(MaxTension { tension, link, time, is_unique }) = self.max_tension {
+            let shared = if *is_unique { "" } else { ", not unique: redundant links share the load" };
+            let line = format!("at most {} N in {link} at {time:.2} s{shared}", significant(*tension));
             lines.insert(lines.len() - 1, ("tension", line));
         }
         if let Some(carriers) = self.carriers() {

@@ -25,13 +25,15 @@ impl Recorder {
     }
 
     pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
-        let arrays: [&[f64]; 6] = [
+        let is_unique = super::as_numbers(&terms.tension_is_unique);
+        let arrays: [&[f64]; 7] = [
             &[time],
             &terms.positions,
             &terms.velocities,
             &terms.constraint_forces,
             &terms.multipliers,
             &terms.tension,
+            &is_unique,
         ];
         self.write(arrays.into_iter().flatten()).map_err(|error| self.failed(error))
     }
@@ -59,7 +61,7 @@ impl Recorder {
 }
 
 /// The names of the columns: `t`, positions `bob.x` …, velocities `bob.vx` …, constraint forces `bob.fx` …,
-/// `row.multiplier` …, `link.tension` ….
+/// `row.multiplier` …, `link.tension` …, `link.tension_is_unique` ….
 fn columns(system: &System) -> Vec<String> {
     let mut columns = vec!["t".to_owned()];
     for quantity in ["", "v", "f"] {
@@ -69,5 +71,6 @@ fn columns(system: &System) -> Vec<String> {
     }
     columns.extend(system.row_names().iter().map(|row| format!("{row}.multiplier")));
     columns.extend(system.links().map(|link| format!("{}.tension", link.name)));
+    columns.extend(system.links().map(|link| format!("{}.tension_is_unique", link.name)));
     columns
 }

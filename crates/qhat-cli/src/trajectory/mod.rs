@@ -39,6 +39,11 @@ impl Format {
     }
 }
 
+/// 1 for true and 0 for false: every array of a trajectory holds numbers.
+fn as_numbers(flags: &[bool]) -> Vec<f64> {
+    flags.iter().map(|&flag| f64::from(u8::from(flag))).collect()
+}
+
 /// A trajectory being written.
 pub(crate) enum Recorder {
     Npz(npz::Recorder),

@@ -34,7 +34,7 @@ impl Array {
 pub(crate) struct Recorder {
     target: Target,
     frames: usize,
-    arrays: [Array; 6],
+    arrays: [Array; 7],
     names: [(&'static str, Vec<String>); 3],
 }
 
@@ -52,6 +52,7 @@ impl Recorder {
             array("constraint_forces", &[n, d])?,
             array("multipliers", &[m])?,
             array("tension", &[links.len()])?,
+            array("tension_is_unique", &[links.len()])?,
         ];
         let names = [
             ("particle_ids", system.particle_names().to_vec()),
@@ -62,13 +63,15 @@ impl Recorder {
     }
 
     pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
-        let rows: [&[f64]; 6] = [
+        let is_unique = super::as_numbers(&terms.tension_is_unique);
+        let rows: [&[f64]; 7] = [
             &[time],
             &terms.positions,
             &terms.velocities,
             &terms.constraint_forces,
             &terms.multipliers,
             &terms.tension,
+            &is_unique,
         ];
         self.frames += 1;
         let mut arrays = self.arrays.iter_mut().zip(rows);

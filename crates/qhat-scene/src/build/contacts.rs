@@ -16,13 +16,16 @@ impl Assembly<'_, '_, '_> {
             None => self.measured_length("rope", &it.between, (a, b), place)?,
         };
         let Rope { restitution, breaks_at, .. } = *it;
-        self.add_placed(it, qhat::Limits { restitution, breaks_at, ..qhat::Limits::rope(a, b, length) }, place)
+        let rope = qhat::Limits::rope(a, b, length);
+        let stiffness = it.stiffness.unwrap_or(rope.stiffness);
+        self.add_placed(it, qhat::Limits { restitution, breaks_at, stiffness, ..rope }, place)
     }
 
     pub(super) fn add_limits(&mut self, it: &Limits, place: &Node) -> Option<()> {
         let (a, b) = self.pair(&it.between, place.key("between"))?;
         let Limits { shortest, longest, restitution, breaks_at, .. } = *it;
-        self.add_placed(it, qhat::Limits { a, b, shortest, longest, restitution, breaks_at }, place)
+        let stiffness = it.stiffness.unwrap_or(1.0);
+        self.add_placed(it, qhat::Limits { a, b, shortest, longest, restitution, breaks_at, stiffness }, place)
     }
 
     /// Adds limits, and keeps their place in the text for errors of the engine about the start.

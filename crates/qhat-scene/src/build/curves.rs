@@ -21,7 +21,7 @@ impl Assembly<'_, '_, '_> {
         let (around, center, radius) = (around.as_ref(), center.as_ref(), radius.as_ref());
         let round = Round { kind: "sphere", particle, around, center, radius };
         let (particle, center, radius) = self.round(&round, place)?;
-        self.add_named(it, qhat::OnSphere { particle, center, radius });
+        self.add_named(it, qhat::OnSphere::new(particle, center, radius));
         Some(())
     }
 
@@ -31,7 +31,7 @@ impl Assembly<'_, '_, '_> {
         let round = Round { kind: "circle", particle, around, center, radius };
         let (particle, center, radius) = self.round(&round, place)?;
         match (&it.axis, self.dimension) {
-            (None, 2) => self.add_named(it, qhat::OnSphere { particle, center, radius }),
+            (None, 2) => self.add_named(it, qhat::OnSphere::new(particle, center, radius)),
             (Some(axis), 3) => {
                 let axis = axis.padded();
                 self.add_named(it, qhat::OnCircle { particle, center, axis, radius });

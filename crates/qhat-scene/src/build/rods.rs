@@ -17,7 +17,14 @@ impl Assembly<'_, '_, '_> {
             None => self.measured_length("rod", &it.between, ends, place)?,
         };
         let name = self.name_of(it);
+        if it.compliance > 0.0 && it.stiffness.is_some() {
+            let message = "a rod with a compliance has no `stiffness`: its tension follows from its own length";
+            let help = "leave out one of the two".to_owned();
+            self.report.error(place.key("stiffness").span.clone(), message, Some(help));
+            return None;
+        }
         let rod = qhat::Distance::new(ends.0, ends.1, length).with_compliance(it.compliance, it.damping);
+        let rod = rod.with_stiffness(it.stiffness.unwrap_or(rod.stiffness));
         if it.breaks_at.is_some() || matches!(it.length, Some(Driven::Text(_))) {
             self.places.insert(name.clone(), place.span.clone());
         }
@@ -68,7 +75,9 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("breaks_at").span.clone(), message, Some(help));
             return None;
         }
-        self.add_named(it, qhat::OnSphere::new(a, b, radius));
+        let rod = qhat::Distance::driven(a, b, radius);
+        let stiffness = it.stiffness.unwrap_or(rod.stiffness);
+        self.add_named(it, rod.with_stiffness(stiffness));
         Some(())
     }
 

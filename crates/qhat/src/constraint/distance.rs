@@ -29,6 +29,9 @@
 //! others. For all other methods the soft rod is a spring of stiffness 1/α with a damper c in parallel, and A has no
 //! active row for it. λ and tension mean the same for all methods.
 //!
+//! EA \[N\], the `stiffness` of a rod, acts only where redundant rods share a force: a rod takes part in the share as if
+//! it stretched by T L/EA (`multiplier/share/`). The motion does not depend on it.
+//!
 //! Fails at |d| = 0. The length form has no direction there and takes the first axis with γ = 0 (any unit vector is a
 //! subgradient of |d| at 0), so that a projection can still pull the ends apart. The J of the squared form vanishes.
 //!
@@ -70,12 +73,15 @@ pub struct Distance {
     pub damping: f64,
     /// The tension or thrust at which the rod breaks \[N\].
     pub breaks_at: Option<f64>,
+    /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods share a force.
+    pub stiffness: f64,
 }
 
 impl Distance {
     /// A rod of the given length \[m\] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Distance { a, b, length, form: DistanceForm::Length, compliance: 0.0, damping: 0.0, breaks_at: None }
+        let (form, stiffness) = (DistanceForm::Length, 1.0);
+        Distance { a, b, length, form, compliance: 0.0, damping: 0.0, breaks_at: None, stiffness }
     }
 
     /// A rod whose length is driven \[m\], a number or a function of t: an [`OnSphere`] about the particle `b`. It is
@@ -95,6 +101,25 @@ impl Distance {
     /// The same rod, with the tension or thrust at which it breaks \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Distance { breaks_at: Some(tension), ..self }
+    }
+
+    /// The same rod with the stiffness EA \[N\] by which it shares a force with redundant rods.
+    ///
+    /// ```
+    /// use qhat::{Dimension, Distance, Gravity, Particle, Settings, Simulation, System};
+    /// let mut builder = System::builder(Dimension::Two);
+    /// let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
+    /// let load = builder.particle(Particle::at("load", [0.0, -1.0]).with_mass(4.0));
+    /// builder.constraint("thin", Distance::new(hook, load, 1.0));
+    /// builder.constraint("thick", Distance::new(hook, load, 1.0).with_stiffness(3.0));
+    /// builder.force(Gravity { acceleration: [0.0, -10.0, 0.0] });
+    /// let (system, state) = builder.build()?;
+    /// let tension = Simulation::new(system, state, Settings::default())?.tension(); // 40 N, one to three
+    /// assert!((tension[0] - 10.0).abs() < 1e-12 && (tension[1] - 30.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_stiffness(self, stiffness: f64) -> Self {
+        Distance { stiffness, ..self }
     }
 
     /// The same rod with a compliance [m/N] and a damping [N·s/m].
@@ -152,6 +177,10 @@ impl Holds for Distance {
 
     fn softness(&self) -> Softness {
         Softness { compliance: self.compliance, damping: self.damping }
+    }
+
+    fn flexibility(&self, _: usize, _: f64) -> f64 {
+        self.length / self.stiffness
     }
 
     fn breaks_at(&self) -> Option<f64> {
@@ -215,6 +244,7 @@ impl Holds for Distance {
         positive("the length of a distance constraint", self.length)?;
         not_negative("the compliance of a distance constraint", self.compliance)?;
         not_negative("the damping of a distance constraint", self.damping)?;
+        positive("the stiffness of a distance constraint", self.stiffness)?;
         if self.compliance > 0.0 && !(1.0 / self.compliance).is_finite() {
             return Err(ConstraintError::ComplianceTooSmall { compliance: self.compliance });
         }

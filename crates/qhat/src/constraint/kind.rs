@@ -55,6 +55,12 @@ pub(crate) trait Holds {
         false
     }
 
+    /// L/EA [m/N] of a row that is a rod, with its length L and its stiffness EA; zero for a row that is none. It
+    /// weighs the share of redundant rods, and no rod is softer for it.
+    fn flexibility(&self, _row: usize, _t: f64) -> f64 {
+        0.0
+    }
+
     /// The rows that open and close.
     fn contacts(&self, _dimension: usize) -> Vec<ContactRows> {
         Vec::new()

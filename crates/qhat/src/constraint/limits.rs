@@ -33,22 +33,24 @@ pub struct Limits {
     pub restitution: f64,
     /// The tension or thrust at which the rope or strut breaks \[N\].
     pub breaks_at: Option<f64>,
+    /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods and ropes share a force.
+    pub stiffness: f64,
 }
 
 impl Limits {
     /// A rope: slack while shorter than its length \[m\], taut at its length.
     pub fn rope(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None }
+        Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None, stiffness: 1.0 }
     }
 
     /// A loose strut: keeps two particles at least a length \[m\] apart.
     pub fn strut(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Limits { a, b, shortest: Some(length), longest: None, restitution: 0.0, breaks_at: None }
+        Limits { longest: None, shortest: Some(length), ..Limits::rope(a, b, length) }
     }
 
     /// Both limits \[m\].
     pub fn between(a: ParticleId, b: ParticleId, shortest: f64, longest: f64) -> Self {
-        Limits { a, b, shortest: Some(shortest), longest: Some(longest), restitution: 0.0, breaks_at: None }
+        Limits { shortest: Some(shortest), ..Limits::rope(a, b, longest) }
     }
 
     /// The same with the part of the closing speed that comes back where a limit is hit \[1\].
@@ -59,6 +61,11 @@ impl Limits {
     /// The same with the tension or thrust that it does not survive \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Limits { breaks_at: Some(tension), ..self }
+    }
+
+    /// The same with the stiffness EA \[N\] by which it shares a force with redundant rods and ropes.
+    pub fn with_stiffness(self, stiffness: f64) -> Self {
+        Limits { stiffness, ..self }
     }
 
     /// The limits with the sign of |d| in C: the longest first.
@@ -123,6 +130,10 @@ impl Holds for Limits {
         self.longest.or(self.shortest).filter(|&limit| limit > 0.0).unwrap_or(extent)
     }
 
+    fn flexibility(&self, row: usize, _: f64) -> f64 {
+        self.rows().nth(row).map_or(0.0, |(_, limit)| limit / self.stiffness)
+    }
+
     fn contacts(&self, _: usize) -> Vec<ContactRows> {
         let rows = 0..self.rows().count();
         rows.map(|row| ContactRows { normal: row, tangents: 0..0, restitution: self.restitution, friction: 0.0 })
@@ -172,6 +183,7 @@ impl Holds for Limits {
         if let Some(longest) = self.longest {
             positive("the longest length", longest)?;
         }
+        positive("the stiffness of a rope or strut", self.stiffness)?;
         check_restitution(self.restitution)?;
         Ok(check_strength(self.breaks_at)?)
     }

@@ -132,6 +132,9 @@ macro_rules! constraints {
             fn pulls_on_each(&self) -> bool {
                 match self { $(Constraint::$kind(constraint) => constraint.pulls_on_each(),)* }
             }
+            fn flexibility(&self, row: usize, t: f64) -> f64 {
+                match self { $(Constraint::$kind(constraint) => constraint.flexibility(row, t),)* }
+            }
             fn contacts(&self, dimension: usize) -> Vec<ContactRows> {
                 match self { $(Constraint::$kind(constraint) => constraint.contacts(dimension),)* }
             }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! λ is the force of the sphere on the particle \[N\], outwards; the tension of a driven rod is −λ. Distance is the
-//! same constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large
+//! same constraint with a fixed length; about a particle, both share a force with redundant rods alike. Only Distance has the squared form, compliance, and the fast code for large
 //! systems.
 //!
 //! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
@@ -29,12 +29,19 @@ pub struct OnSphere {
     pub center: Anchor,
     /// r \[m\], positive.
     pub radius: Driven,
+    /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods share a force, and only about a particle.
+    pub stiffness: f64,
 }
 
 impl OnSphere {
     /// A particle at a distance \[m\] from a centre.
     pub fn new(particle: ParticleId, center: impl Into<Anchor>, radius: impl Into<Driven>) -> Self {
-        OnSphere { particle, center: center.into(), radius: radius.into() }
+        OnSphere { particle, center: center.into(), radius: radius.into(), stiffness: 1.0 }
+    }
+
+    /// The same with the stiffness EA \[N\] by which a driven rod shares a force with redundant rods.
+    pub fn with_stiffness(self, stiffness: f64) -> Self {
+        OnSphere { stiffness, ..self }
     }
 }
 
@@ -74,7 +81,13 @@ impl Smooth for OnSphere {
         self.radius.value(0.0)
     }
 
+    fn flexibility(&self, t: f64) -> f64 {
+        // Without a second particle it is a guide and no rod.
+        self.center.particle().map_or(0.0, |_| self.radius.value(t).abs() / self.stiffness)
+    }
+
     fn check(&self) -> Result<(), ConstraintError> {
+        positive("the stiffness of a rod", self.stiffness)?;
         self.center.check("the centre of a sphere")?;
         check_different([self.particle].into_iter().chain(self.center.particle()), "a sphere")?;
         check_radius(&self.radius, "the radius of a sphere")

@@ -43,6 +43,11 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
+    /// L/EA [m/N] of a rod whose length is driven; zero for every other kind.
+    fn flexibility(&self, _t: f64) -> f64 {
+        0.0
+    }
+
     /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
@@ -178,6 +183,10 @@ impl<S: Smooth> Holds for S {
 
     fn scale(&self, extent: f64) -> f64 {
         Smooth::scale(self, extent)
+    }
+
+    fn flexibility(&self, _: usize, t: f64) -> f64 {
+        Smooth::flexibility(self, t)
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {

@@ -22,6 +22,7 @@ mod frame;
 mod implicit;
 mod projection;
 mod rattle;
+mod reading;
 mod runge_kutta;
 mod watch;
 mod workspace;

@@ -29,8 +29,9 @@ impl TensionWatch {
     pub(crate) fn note(&mut self, system: &System, state: &State) {
         let links = system.constraints.iter().enumerate().filter(|(_, named)| named.constraint.as_link().is_some());
         let tensions = self.workspace.tension(system, state, &self.feedback);
-        for ((place, _), tension) in links.zip(tensions) {
-            let largest = MaxTension { tension, link: ConstraintId(place), time: state.t };
+        let is_unique = self.workspace.tension_is_unique(system);
+        for (((place, _), tension), is_unique) in links.zip(tensions).zip(is_unique) {
+            let largest = MaxTension { tension, link: ConstraintId(place), time: state.t, is_unique };
             self.largest = MaxTension::larger(self.largest, Some(largest));
         }
     }

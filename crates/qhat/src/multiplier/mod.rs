@@ -14,6 +14,7 @@ mod memory;
 mod pushes;
 mod reaction;
 mod rhs;
+mod share;
 #[cfg(test)]
 mod tests;
 
@@ -21,6 +22,7 @@ pub(crate) use equation::APPROACH;
 pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;
+pub(crate) use share::{RowsToShare, Share};
 
 use crate::constraint::Rows;
 use crate::report::Warning;

@@ -93,6 +93,8 @@ pub struct MaxTension {
     pub link: ConstraintId,
     /// t \[s\].
     pub time: f64,
+    /// Whether the tension is unique; if not, other tensions of redundant rods would do the same.
+    pub is_unique: bool,
 }
 
 impl MaxTension {

@@ -9,7 +9,8 @@ use std::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Warning {
-    /// A is singular: rows depend on each other. λ is the least-norm one; Q̂ and the motion are unique.
+    /// A is singular: rows depend on each other. λ is the share of [`Distance::stiffness`](crate::Distance::stiffness);
+    /// Q̂ and the motion are unique.
     Singular,
     /// Rows whose gradient vanishes here, so that no multiplier can act through them.
     NoGradient {

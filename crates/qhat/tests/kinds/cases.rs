@@ -263,7 +263,7 @@ pub(crate) const CASES: &[Case] = &[
         &[],
         |t| {
             let center = Anchor::Point([t.of("sin(t)/2"), 0.0.into(), t.of("-t^2/3")]);
-            vec![OnSphere { particle: P[1], center, radius: t.s() }.into()]
+            vec![OnSphere::new(P[1], center, t.s()).into()]
         },
         &["dist(p1, [sin(t)/2, 0, -t^2/3]) - S"],
         PUSH,

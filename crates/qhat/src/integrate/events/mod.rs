@@ -202,10 +202,13 @@ impl<'a, const D: usize> EventStepper<'a, D> {
     fn write_event_functions(&mut self, t: f64) {
         let EventStepper { run, modes, event_functions, frame, normals, .. } = self;
         let (system, settings, workspace) = (run.system, run.settings, &mut *run.field.workspace);
-        let (equation, motion) = (&mut workspace.equation, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t });
+        let Workspace { equation, q, qd, reading, .. } = workspace;
+        let motion = Motion::<D> { q, qd, t };
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
         if is_closed || modes.broken.iter().any(|broken| !broken) {
             equation.solve(system, motion, &Feedback::NONE, true);
+            // Links break, and contacts open, by the force that redundant ones share.
+            reading.share_out::<D>(system, t, &Feedback::NONE, equation);
         }
         let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
         EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);
