@@ -32,6 +32,7 @@ mod order;
 mod reactions;
 mod refused;
 mod serde;
+mod size;
 mod snapshot;
 mod softness;
 mod step_size;

@@ -7,4 +7,4 @@ mod matrix;
 
 pub(crate) use chains::ChainPlan;
 pub(crate) use contacts::{Contact, Contacts};
-pub(crate) use matrix::{MatrixPlan, MatrixStructure};
+pub(crate) use matrix::{MatrixPlan, MatrixStructure, blocks_at};

@@ -120,11 +120,12 @@ impl System {
 
     /// The broken links, by their places among [`System::links`].
     pub fn broken_links(&self, state: &State) -> Vec<usize> {
+        // Breakables, like links, are in the order of constraints, so that their rows ascend.
         let breakables = self.contacts.breakables.iter().zip(&state.modes.broken);
         let broken: Vec<usize> =
             breakables.filter(|&(_, &broken)| broken).map(|(breakable, _)| breakable.rows.start).collect();
         let links = self.links().enumerate();
-        links.filter(|(_, link)| broken.contains(&link.rows.start)).map(|(place, _)| place).collect()
+        links.filter(|(_, link)| broken.binary_search(&link.rows.start).is_ok()).map(|(place, _)| place).collect()
     }
 
     /// The parts of A = J W Jᵀ that are coupled with no other part: for each its shape, the method that factors it and
