@@ -47,4 +47,5 @@ mod verify_forces;
 mod verify_gears;
 mod verify_implicit;
 mod verify_pendulum;
+mod verify_rigid;
 mod verify_spring;
