@@ -175,6 +175,7 @@ pub use force::{
 pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
+pub use multiplier::Freedom;
 pub use point::Vector;
 pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
@@ -182,5 +183,6 @@ pub use simulation::Simulation;
 pub use softness::SoftRow;
 pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
+pub use structure::FlatClique;
 pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

@@ -31,6 +31,7 @@ mod one_step_by_hand;
 mod order;
 mod reactions;
 mod refused;
+mod second_order;
 mod serde;
 mod size;
 mod snapshot;

@@ -40,6 +40,7 @@ fn a_lever_is_a_compound_pendulum() {
     let rank = evaluate(&system, &state).rank.unwrap();
     assert_eq!((system.row_count(), rank, 2 * 2 - rank), (3, 3, 1), "one degree of freedom, no row redundant");
     let mut simulation = Simulation::new(system, state, settings()).unwrap();
+    assert!(simulation.second_order().is_empty());
     for frame in 1..=60 {
         simulation.step().unwrap();
         let ([x, y, _], [u, v, _]) = (simulation.position(c), simulation.velocity(c));

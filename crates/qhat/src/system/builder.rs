@@ -170,6 +170,8 @@ impl SystemBuilder {
             feedback: self.feedback,
             extent,
             contacts: Contacts::default(),
+            second_order: Vec::new(),
+            second_order_rods: Vec::new(),
         };
         system.set_constraints(self.constraints.clone());
         let plan = system.plan_matrix();
