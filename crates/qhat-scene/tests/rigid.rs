@@ -28,7 +28,7 @@ fn joints_in_a_line_and_in_a_plane_are_held() {
     let plate = ["0.0, 0.0, 1.0", "2.0, 0.0, 1.0", "2.0, 1.0, 1.0", "0.0, 1.0, 1.0", "1.0, 0.5, 1.0"];
     assert_eq!(held(3, &plate), ["c-a", "c-b", "a-b", "rigid(d)", "rigid(e)"]);
     // In general position there are rods alone.
-    assert!(held(2, &plate.map(|at| at.trim_end_matches(", 1.0"))).iter().all(|name| name.contains('-')));
+    assert!(held(2, &plate.map(|at| at.strip_suffix(", 1.0").unwrap())).iter().all(|name| name.contains('-')));
 }
 
 /// The number behind a name goes on where it was, also where a name with a number was given.
