@@ -30,7 +30,8 @@ impl TensionWatch {
         let links = system.constraints.iter().enumerate().filter(|(_, named)| named.constraint.as_link().is_some());
         let tensions = self.workspace.tension(system, state, &self.feedback);
         let is_unique = self.workspace.tension_is_unique(system);
-        for (((place, _), tension), is_unique) in links.zip(tensions).zip(is_unique) {
+        let links = links.zip(tensions).zip(is_unique);
+        for (((place, _), tension), is_unique) in links.filter(|(((place, _), _), _)| !system.is_second_order(*place)) {
             let largest = MaxTension { tension, link: ConstraintId(place), time: state.t, is_unique };
             self.largest = MaxTension::larger(self.largest, Some(largest));
         }

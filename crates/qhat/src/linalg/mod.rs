@@ -32,7 +32,7 @@ pub use plan::{Component, ComponentKind, FactorMethod};
 pub(crate) use plan::{EliminationPlan, components};
 pub(crate) use small_pivots::SmallPivots;
 pub use symmetric::SymmetricMatrix;
-pub(crate) use symmetric::{Lower, Pattern};
+pub(crate) use symmetric::{Lower, OuterProducts, Pattern};
 
 use dense::DenseLdl;
 use fronts::FrontPlan;

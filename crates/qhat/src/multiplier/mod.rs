@@ -2,7 +2,8 @@
 //!
 //! `equation.rs` solves it; its parts are `rhs.rs` (b), `matrix.rs` (A), `factor.rs` and `independent.rs` (λ),
 //! `reaction.rs` (Q̂ and q̈) and `friction.rs` (F). `active.rs` keeps the rows of inactive constraints out of it,
-//! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored.
+//! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored;
+//! `second_order.rs` finds rods that hold only to second order.
 
 mod active;
 mod equation;
@@ -14,6 +15,7 @@ mod memory;
 mod pushes;
 mod reaction;
 mod rhs;
+mod second_order;
 mod share;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,8 @@ pub(crate) use equation::APPROACH;
 pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;
+pub use second_order::Freedom;
+pub(crate) use second_order::{freedom, second_order};
 pub(crate) use share::{RowsToShare, Share};
 
 use crate::constraint::Rows;
@@ -112,6 +116,9 @@ impl Equation {
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });
+        }
+        if !system.second_order.is_empty() {
+            warnings.push(Warning::SecondOrder { joints: system.names_of_cliques() });
         }
         if !self.solver.dependent().is_empty() {
             warnings.push(Warning::Singular);

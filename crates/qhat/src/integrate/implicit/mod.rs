@@ -35,6 +35,7 @@ use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Integrator};
 use crate::state::{Carry, Previous, State, SteadyMemory};
 use crate::system::System;
+use graph::check_couplings;
 use newton::{Ending, Newton, Tried};
 use residual::exceeds;
 
@@ -82,7 +83,13 @@ pub(crate) fn frame<const D: usize>(
 ) -> Result<StepReport, StepError> {
     let (system, length) = (frame.system, frame.length);
     reach::check::<D>(system, state, formula.integrator, length)?;
-    let mut scratch = frame.workspace.implicit.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
+    let mut scratch = match frame.workspace.implicit.take() {
+        Some(scratch) => scratch,
+        None => {
+            check_couplings(system, state.t)?;
+            Box::new(Scratch::new(system))
+        }
+    };
     let before = frame.factorizations();
     frame.workspace.set_modes(system, state);
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
