@@ -34,9 +34,9 @@ pub enum StepError {
         /// C beyond the jump.
         residual: f64,
     },
-    /// No multipliers satisfy the equation of motion to six digits.
+    /// No multipliers satisfy the equation of motion to three digits.
     #[error(
-        "at t = {} s the constraint forces cannot be found to six digits: masses, lengths or forces are too many decades \
+        "at t = {} s the constraint forces cannot be found to three digits: masses, lengths or forces are too many decades \
          apart",
         shown(*time)
     )]

@@ -24,7 +24,8 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let rod = qhat::Distance::new(ends.0, ends.1, length).with_compliance(it.compliance, it.damping);
-        let rod = rod.with_stiffness(it.stiffness.unwrap_or(rod.stiffness));
+        let stiffness = it.stiffness.unwrap_or(rod.stiffness);
+        let rod = rod.with_stiffness(stiffness);
         if it.breaks_at.is_some() || matches!(it.length, Some(Driven::Text(_))) {
             self.places.insert(name.clone(), place.span.clone());
         }
