@@ -182,8 +182,8 @@ export interface StepReport {
   max_residual: number;
   max_residual_rate: number;
   max_relative_length_error: number;
-  /** the largest tension (positive) or thrust, N, with its constraint and time, s, and whether it is unique; null if it is not
-   * recorded */
+  /** the largest tension (positive) or thrust, N, with its constraint and time, s; null if it is not recorded;
+   * is_unique is false if redundant links could carry the load in other ways */
   max_tension: { tension: number; constraint: number; time: number; is_unique: boolean } | null;
   energy: Energy;
   /** the integrator of this step; with auto, the integrator that auto chose */

@@ -112,8 +112,8 @@ fn infeasible_rows_are_named() {
     assert!(largest(&evaluate(&system, &before).multipliers) < 1e3);
 }
 
-/// Redundant rows are reported and carry load: λ has the least norm, equal rows have equal λ, and the motion is the
-/// same as with one row.
+/// Redundant rows are reported and carry load: equal rods carry equal parts, and the motion is the same as with one
+/// row.
 #[test]
 fn redundant_rows_share_the_load() {
     let (single, start) = systems::pendulum(0.5);

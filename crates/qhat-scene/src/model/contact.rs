@@ -26,8 +26,7 @@ pub(crate) struct Rope {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
-    /// EA of the rope [N], above 0, 1 if left out: how redundant ropes and rods share a force, as elastic rods would that get stiffer
-    /// and stiffer. The motion does not depend on it.
+    /// EA of the rope [N], above 0, 1 if left out: how redundant ropes share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) stiffness: Option<f64>,
@@ -60,8 +59,7 @@ pub(crate) struct Limits {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
-    /// EA [N], above 0, 1 if left out: how redundant links share a force, as elastic rods would that get stiffer
-    /// and stiffer. The motion does not depend on it.
+    /// EA [N], above 0, 1 if left out: how redundant links share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) stiffness: Option<f64>,

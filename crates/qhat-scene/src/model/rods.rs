@@ -33,8 +33,7 @@ pub(crate) struct Distance {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
-    /// EA of the rod [N], above 0, 1 if left out: how redundant rods share a force, as elastic rods would that get stiffer
-    /// and stiffer. The motion does not depend on it.
+    /// EA of the rod [N], above 0, 1 if left out: how redundant rods share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) stiffness: Option<f64>,

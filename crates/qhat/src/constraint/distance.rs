@@ -29,8 +29,8 @@
 //! others. For all other methods the soft rod is a spring of stiffness 1/α with a damper c in parallel, and A has no
 //! active row for it. λ and tension mean the same for all methods.
 //!
-//! EA \[N\], the `stiffness` of a rod, acts only where redundant rods share a force: a rod takes part in the share as if
-//! it stretched by T L/EA (`multiplier/share/`). The motion does not depend on it.
+//! EA \[N\], the `stiffness` of a rod, acts only where redundant rods share a force: a rod takes part in the share as
+//! if it stretched by T L/EA (`multiplier/share/`). The motion does not depend on it.
 //!
 //! Fails at |d| = 0. The length form has no direction there and takes the first axis with γ = 0 (any unit vector is a
 //! subgradient of |d| at 0), so that a projection can still pull the ends apart. The J of the squared form vanishes.

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! λ is the force of the sphere on the particle \[N\], outwards; the tension of a driven rod is −λ. Distance is the
-//! same constraint with a fixed length; about a particle, both share a force with redundant rods alike. Only Distance has the squared form, compliance, and the fast code for large
-//! systems.
+//! same constraint with a fixed length. Only Distance has the squared form, compliance, and the fast code for large
+//! systems. About a particle, both share a force with redundant rods alike.
 //!
 //! Fails at |d| = 0. There n is the first axis, so that a projection can still move the particle away from the centre.
 

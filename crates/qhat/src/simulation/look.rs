@@ -57,8 +57,8 @@ impl Simulation {
         self.workspace.tension(&self.system, &self.state, &feedback)
     }
 
-    /// For each link whether its tension is unique. Redundant links could carry the load in other ways; the tension that
-    /// they are given is the share of elastic rods in the limit of infinite stiffness.
+    /// For each link whether its tension is unique. Redundant links could carry the load in other ways; their tension
+    /// is the share of elastic rods in the limit of infinite stiffness.
     pub fn tension_is_unique(&mut self) -> Vec<bool> {
         self.tension();
         self.workspace.tension_is_unique(&self.system)

@@ -36,8 +36,8 @@ const SELF_STRESS: f64 = 1e-8;
 /// Pivot of K, scaled to a unit diagonal, above which nothing can move beyond doubt.
 const HELD: f64 = 1e-6;
 
-/// Part of the largest rate by which J q̈ may be off where rows count as free of contradiction: the constraint tolerance
-/// of redundant rows that are not multiples of each other, with a digit to spare.
+/// Part of the largest rate by which J q̈ may be off where rows count as free of contradiction: the constraint
+/// tolerance of redundant rows that are not multiples of each other, with a digit to spare.
 const CONSISTENT: f64 = 1e-9;
 
 /// Bᵀx = F is met where it is off by a roundoff or two of the largest sum of its terms.
@@ -216,9 +216,9 @@ impl Component {
         Some((x, self_stress))
     }
 
-    /// F where the rows leave no particle any motion: the accelerations are those of the drives, J q̈ = −γ − ks C − kd Ċ,
-    /// and F = M q̈ − Q. At rest F is −Q to the bit, whatever the masses are; Jᵀλ is exact only to as many roundoffs of
-    /// the force on the lightest particle as the heaviest one is heavier.
+    /// F where the rows leave no particle any motion: the accelerations are those of the drives,
+    /// J q̈ = −γ − ks C − kd Ċ, and F = M q̈ − Q. At rest F is −Q to the bit, whatever the masses are; Jᵀλ is exact only
+    /// to as many roundoffs of the force on the lightest particle as the heaviest one is heavier.
     fn improve_force<const D: usize>(&self, rows: &RowsToShare<'_>, numbers: &mut Numbers, force: &mut [f64]) {
         let RightHandSide { bias, stiffness, damping, .. } = rows.rates;
         let rates = self.rows.iter().zip(&numbers.size).map(|(&row, size)| {

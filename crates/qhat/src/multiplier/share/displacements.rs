@@ -92,7 +92,8 @@ impl Displacements {
         }
     }
 
-    /// Factors D K D + δ I for these B, D numbers for each block, and returns the smallest pivot; `None` if that failed.
+    /// Factors D K D + δ I for these B, D numbers for each block, and returns the smallest pivot; `None` if that
+    /// failed.
     pub(super) fn factor<const D: usize>(&mut self, rows: &Component, b: &[f64]) -> Option<f64> {
         let Displacements { pattern, slots, hub, factor, values, scale, .. } = self;
         scale.fill(0.0);
