@@ -27,7 +27,7 @@
 //! # The five things one does
 //!
 //! **Model.** A [`System::builder`] collects [`Particle`]s, constraints and forces, and gives an id for each. [`Body`]
-//! makes rigid bodies of particles and rods, [`rigid_rods`] holds a cluster of particles together.
+//! makes rigid bodies of particles and rods, [`rigid_cluster`] holds a cluster of particles together.
 //!
 //! **Hold.** A constraint keeps a function of the positions at zero, exactly:
 //!
@@ -75,7 +75,7 @@
 //! | `center-of-mass` | [`Relation::center_of_mass`] |
 //! | `line`, `plane`, `sphere` | [`OnLine`], [`OnPlane`], [`OnSphere`] |
 //! | `circle`, `ellipse`, `curve` | [`OnCircle`], [`OnEllipse`], [`OnCurve`] |
-//! | `rigid` | [`rigid_rods`] and [`Distance`] |
+//! | `rigid` | [`rigid_cluster`], [`Distance`] and [`Relation`] |
 //! | `half-space`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
 //! | `rack` | [`Gears::rack`] |
 //! | `expression` | [`ExpressionConstraint`] |
@@ -159,7 +159,7 @@ mod threads;
 
 pub use allowed::{GeometryError, ValueError};
 pub use body::{Body, BodyError};
-pub use cluster::rigid_rods;
+pub use cluster::{RigidCluster, rigid_cluster, rigid_rods};
 #[doc(inline)]
 pub use constraint::*;
 pub use driven::Driven;
@@ -175,6 +175,7 @@ pub use force::{
 pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
+pub use multiplier::Freedom;
 pub use point::Vector;
 pub use report::{Event, EventKind, MaxTension, Projection, Solver, StepReport, Warning};
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
@@ -182,5 +183,6 @@ pub use simulation::Simulation;
 pub use softness::SoftRow;
 pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
+pub use structure::FlatClique;
 pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};

@@ -33,6 +33,7 @@ use crate::report::{Solver, StepReport, Warning};
 use crate::settings::Feedback;
 use crate::state::{Carry, Previous, State};
 use crate::system::System;
+use graph::check_couplings;
 use newton::{Ending, Newton, Tried};
 
 /// Newton iterations of one step. From q + h q̇ most steps take a few, and factor the matrix four times or less
@@ -76,7 +77,13 @@ pub(crate) fn frame<const D: usize>(
     state: &mut State,
 ) -> Result<StepReport, StepError> {
     let (system, length) = (frame.system, frame.length);
-    let mut scratch = frame.workspace.implicit.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
+    let mut scratch = match frame.workspace.implicit.take() {
+        Some(scratch) => scratch,
+        None => {
+            check_couplings(system, state.t)?;
+            Box::new(Scratch::new(system))
+        }
+    };
     let before = frame.factorizations();
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
