@@ -191,7 +191,7 @@ impl System {
         cliques.iter().flat_map(|clique| &clique.rods).for_each(|rod| is_replaced[rod.0] = true);
         let kept = self.constraints.iter().zip(is_replaced).filter(|(_, is_replaced)| !is_replaced);
         let kept = kept.map(|(named, _)| (named.name.clone(), named.constraint.clone()));
-        let others = cliques.iter().flat_map(|clique| stand_in(clique)).map(|constraint| (String::new(), constraint));
+        let others = cliques.iter().flat_map(stand_in).map(|constraint| (String::new(), constraint));
         let mut system = self.clone();
         system.set_constraints(kept.chain(others).collect());
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
