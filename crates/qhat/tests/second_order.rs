@@ -159,7 +159,7 @@ fn a_wheel_of_many_spokes_has_no_clique() {
     let n = 500;
     let mut joints = vec![[0.0, 0.0]];
     let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
-    joints.extend((0..n).map(|i| [angle(i).cos(), angle(i).sin()]));
+    joints.extend((0..n).map(|i| [libm::cos(angle(i)), libm::sin(angle(i))]));
     let mut rods: Vec<[usize; 2]> = (1..=n).map(|i| [0, i]).collect();
     rods.extend((1..n).map(|i| [i, i + 1]));
     let simulation = Frame::plane(&joints, &[], &rods).simulation();

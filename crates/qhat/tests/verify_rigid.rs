@@ -105,9 +105,9 @@ fn a_plate_in_space_turns_as_a_symmetric_top() {
         simulation.step().unwrap();
         let angle = size / across * 0.05 * f64::from(frame);
         let normal = [0.0, 0.0, 1.0];
-        let (turned, part) = (cross(axis, normal), dot(axis, normal) * (1.0 - angle.cos()));
+        let (turned, part) = (cross(axis, normal), dot(axis, normal) * (1.0 - libm::cos(angle)));
         let wanted: Vector =
-            std::array::from_fn(|k| normal[k] * angle.cos() + turned[k] * angle.sin() + axis[k] * part);
+            std::array::from_fn(|k| normal[k] * libm::cos(angle) + turned[k] * libm::sin(angle) + axis[k] * part);
         let at: Vec<Vector> = particles.iter().map(|&id| simulation.position(id)).collect();
         let side = |a: usize, b: usize| -> Vector { std::array::from_fn(|k| at[b][k] - at[a][k]) };
         let found = cross(side(4, 7), side(4, 5));
