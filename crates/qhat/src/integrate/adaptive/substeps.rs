@@ -25,6 +25,10 @@ const MISSED: f64 = 3.0;
 /// Part of the substep by which a substep that does not meet the constraints is tried again.
 const HALF: f64 = 0.5;
 
+/// Extents of the system over which an acceleration that has run away would carry a particle within a frame, far above
+/// those of stiff springs, whose substeps are merely many.
+const AWAY: f64 = 1e12;
+
 /// Whether a substep with this error estimate is kept; an error that is not a number is not.
 pub(crate) fn accepts(error: f64, settings: &Settings) -> bool {
     error <= MISSED * settings.tolerance
@@ -99,7 +103,11 @@ impl<'a> Substeps<'a> {
     pub(crate) fn run(&mut self, method: &mut impl Stepper, state: &mut State) -> Result<End, StepError> {
         let outcome = self.advance(method, state);
         method.end(state);
-        outcome
+        outcome.map_err(|error| match error {
+            // Substeps without end are a symptom of a force without bound.
+            StepError::TooManySubsteps { .. } => self.runaway(state, AWAY).unwrap_or(error),
+            other => other,
+        })
     }
 
     fn advance(&mut self, method: &mut impl Stepper, state: &mut State) -> Result<End, StepError> {
@@ -113,6 +121,8 @@ impl<'a> Substeps<'a> {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
                     if self.reject(&substep, growth) < SHORTEST * self.length {
+                        // The error is about the last good motion, which the method may have kept to itself.
+                        method.end(state);
                         return Err(self.not_satisfied(method, state, substep.end));
                     }
                     method.turn_back(state);
@@ -240,14 +250,22 @@ impl<'a> Substeps<'a> {
                 let (row, residual) = (self.system.row_names[row].clone(), rows.C[row]);
                 return StepError::NotSatisfied { time: state.t, row, residual };
             }
+            self.runaway(state, 0.0).unwrap_or_else(|| self.not_finite(method, state))
+        })
+    }
+
+    /// The error that names the particle with the largest acceleration, if that would carry it over more than so many
+    /// extents of the system within a frame.
+    fn runaway(&self, state: &State, extents: f64) -> Option<StepError> {
+        in_dimension!(self.system.dimension, D => {
             let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-            match energy::most_accelerated(self.system, motion) {
-                Some((particle, acceleration)) => {
-                    let particle = self.system.particle_names[particle.0].clone();
-                    StepError::RanAway { time: state.t, particle, acceleration }
-                }
-                None => self.not_finite(method, state),
+            let (particle, acceleration) = energy::most_accelerated(self.system, motion)?;
+            // A product that is not a number counts as too far.
+            if acceleration * self.length * self.length < extents * self.system.extent {
+                return None;
             }
+            let particle = self.system.particle_names[particle.0].clone();
+            Some(StepError::RanAway { time: state.t, particle, acceleration })
         })
     }
 
