@@ -42,6 +42,24 @@ fn counts_by_hand() {
     assert_eq!(found["redundant"], false);
 }
 
+/// Three joints in a line: two degrees of freedom to first order, and one of the lever that the rods are.
+#[test]
+fn rods_that_hold_to_second_order_are_named() {
+    let joints = [(-1.0, 0.0, false), (0.0, 0.0, true), (1.0, 0.0, false)];
+    let scene = truss(&joints, &[(0, 1), (1, 2), (0, 2)]);
+    let found = check(&scene);
+    assert_eq!(counts(&found), [3, 2, 2, 1]);
+    assert_eq!(
+        (&found["degrees_of_freedom_nearby"], &found["second_order"]),
+        (&json!(1), &json!([["p0", "p1", "p2"]]))
+    );
+    let said = Folder::new().qhat_reading(&scene, &["check", "-"]).well().stdout;
+    assert!(said.contains("2 degrees of freedom at this position, 1 of the mechanism near by"), "{said}");
+    assert!(said.contains("rods hold `p0`, `p1`, `p2` in a line or plane only to second order"), "{said}");
+    let triangle = check(&truss(&[(-1.0, 0.0, false), (0.0, 0.5, true), (1.0, 0.0, false)], &[(0, 1), (1, 2), (0, 2)]));
+    assert_eq!((&triangle["degrees_of_freedom_nearby"], &triangle["second_order"]), (&json!(null), &json!([])));
+}
+
 #[test]
 fn the_rank_is_that_of_the_bare_matrix() {
     // Diagonal drag makes A + ε I regular; the rank is the rank of A.

@@ -9,4 +9,5 @@ mod hostile;
 mod keys;
 mod parameters;
 mod recipes;
+mod rigid;
 mod shipped;

@@ -153,9 +153,30 @@ pub enum StepError {
         /// The limit in force.
         max_substeps: usize,
     },
+    /// Constraints or forces of very many particles, under a method that solves for the end of the step.
+    #[error(
+        "at t = {} s implicit methods would need a block for each of {pairs} pairs of particles, of which {limit} are \
+         allowed{}: use dop853",
+        shown(*time), most_at(constraint.as_deref())
+    )]
+    TooManyCouplings {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The constraint with most particles; `None` where forces alone couple the particles.
+        constraint: Option<String>,
+        /// The number of pairs of particles that constraints and forces couple.
+        pairs: usize,
+        /// The number that is allowed.
+        limit: usize,
+    },
     /// A setting was refused.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+}
+
+/// The constraint that couples most pairs, in words.
+fn most_at(constraint: Option<&str>) -> String {
+    constraint.map_or(String::new(), |name| format!(" (constraint `{name}` couples most)"))
 }
 
 /// The names of particles, and how far they are beyond a surface or limit.

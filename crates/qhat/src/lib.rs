@@ -27,7 +27,7 @@
 //! # The five things one does
 //!
 //! **Model.** A [`System::builder`] collects [`Particle`]s, constraints and forces, and gives an id for each. [`Body`]
-//! makes rigid bodies of particles and rods, [`rigid_rods`] holds a cluster of particles together.
+//! makes rigid bodies of particles and rods, [`rigid_cluster`] holds a cluster of particles together.
 //!
 //! **Hold.** A constraint keeps a function of the positions at zero, exactly:
 //!
@@ -75,7 +75,7 @@
 //! | `center-of-mass` | [`Relation::center_of_mass`] |
 //! | `line`, `plane`, `sphere` | [`OnLine`], [`OnPlane`], [`OnSphere`] |
 //! | `circle`, `ellipse`, `curve` | [`OnCircle`], [`OnEllipse`], [`OnCurve`] |
-//! | `rigid` | [`rigid_rods`] and [`Distance`] |
+//! | `rigid` | [`rigid_cluster`], [`Distance`] and [`Relation`] |
 //! | `half-space`, `ball`, `box` | [`Obstacle`] with a [`Surface`] |
 //! | `rack` | [`Gears::rack`] |
 //! | `expression` | [`ExpressionConstraint`] |
@@ -160,7 +160,7 @@ mod words;
 
 pub use allowed::{GeometryError, ValueError};
 pub use body::{Body, BodyError};
-pub use cluster::rigid_rods;
+pub use cluster::{RigidCluster, rigid_cluster, rigid_rods};
 #[doc(inline)]
 pub use constraint::*;
 pub use driven::Driven;
@@ -176,6 +176,7 @@ pub use force::{
 pub use hyper::Hyper;
 pub use integrate::{Workspace, check_start, project, step};
 pub use linalg::{Component, ComponentKind, FactorMethod, SymmetricMatrix};
+pub use multiplier::Freedom;
 pub use number::larger;
 pub use point::Vector;
 pub use report::{Event, EventKind, MaxTension, Projection, RepeatedWarning, Solver, StepReport, Warning, WarningLog};
@@ -184,6 +185,7 @@ pub use simulation::Simulation;
 pub use softness::SoftRow;
 pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
+pub use structure::FlatClique;
 pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
 pub use terms::{NOTATION, Notation, Terms, evaluate};
 pub use words::{Digits, Seconds};

@@ -1,5 +1,7 @@
 //! The ground floor: the number of dimensions, and the ids of particles, constraints and forces.
 
+use std::collections::HashSet;
+
 /// Number of space dimensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
@@ -62,4 +64,10 @@ ids! {
     /// The id of a force, from [`SystemBuilder::force`](crate::SystemBuilder::force) or
     /// [`System::force`](crate::System::force).
     ForceId,
+}
+
+/// The place of the first id that came before in the list, for lists of any length; `None` if all differ.
+pub(crate) fn first_repeated(ids: impl IntoIterator<Item = ParticleId>) -> Option<usize> {
+    let mut seen = HashSet::new();
+    ids.into_iter().position(|id| !seen.insert(id))
 }

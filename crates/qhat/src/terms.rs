@@ -135,12 +135,12 @@ impl Workspace {
     /// Every symbol at a state. Integrators that project see the bare equation: their feedback is none.
     pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
         let tension = self.tension(system, state, feedback);
-        collect(system, state, self.equation().clone(), tension)
+        collect(system, state, self.equation(), tension)
     }
 }
 
 /// The symbols of an equation that was solved at a state, with the tensions that belong to it.
-fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>) -> Terms {
+fn collect(system: &System, state: &State, equation: &Equation, tension: Vec<f64>) -> Terms {
     let rank = equation.solver.rank(&system.matrix);
     let warnings = equation.warnings(system);
     let constraint_matrix =
@@ -151,20 +151,20 @@ fn collect(system: &System, state: &State, equation: Equation, tension: Vec<f64>
         positions: state.q.clone(),
         velocities: state.qd.clone(),
         inverse_masses: system.inverse_mass.clone(),
-        applied_forces: equation.Q,
-        residual: equation.rows.C,
-        residual_rate: equation.rows.Cd,
-        jacobian: equation.rows.J,
-        acceleration_bias: equation.rows.gamma,
+        applied_forces: equation.Q.clone(),
+        residual: equation.rows.C.clone(),
+        residual_rate: equation.rows.Cd.clone(),
+        jacobian: equation.rows.J.clone(),
+        acceleration_bias: equation.rows.gamma.clone(),
         constraint_matrix,
-        rhs_bias: equation.b.bias,
-        rhs_forces: equation.b.forces,
-        rhs_stiffness: equation.b.stiffness,
-        rhs_damping: equation.b.damping,
-        right_hand_side: equation.b.sum,
-        multipliers: equation.lambda,
-        constraint_forces: equation.Q_hat,
-        accelerations: equation.qdd,
+        rhs_bias: equation.b.bias.clone(),
+        rhs_forces: equation.b.forces.clone(),
+        rhs_stiffness: equation.b.stiffness.clone(),
+        rhs_damping: equation.b.damping.clone(),
+        right_hand_side: equation.b.sum.clone(),
+        multipliers: equation.lambda.clone(),
+        constraint_forces: equation.Q_hat.clone(),
+        accelerations: equation.qdd.clone(),
         tension,
         is_open,
         rank,

@@ -12,7 +12,7 @@ use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
 use crate::source::Source;
 use components::Components;
-use qhat::{Integrator, Settings, Simulation, Solver, Terms, evaluate, larger};
+use qhat::{Integrator, ParticleId, Settings, Simulation, Solver, Terms, evaluate, larger};
 use qhat_scene::{Scene, SceneErrors};
 use serde::Serialize;
 use serde_json::json;
@@ -71,6 +71,10 @@ struct Findings {
     /// The rank of A at those positions, as are all numbers below; none where A is singular and too large to count.
     rank: Option<usize>,
     degrees_of_freedom: Option<usize>,
+    /// Those of the mechanism at positions near by, where rods hold joints only to second order; else none.
+    degrees_of_freedom_nearby: Option<usize>,
+    /// The joints of each group that rods hold only to second order.
+    second_order: Vec<Vec<String>>,
     states_of_self_stress: Option<usize>,
     redundant: Option<bool>,
     /// The connected components of A; equal components are counted in one entry.
@@ -120,8 +124,15 @@ impl Findings {
         let settings = Settings { integrator: Integrator::Dop853, ..scene.settings };
         let simulation = Simulation::new(system.clone(), scene.state.clone(), settings);
         let mut warnings: Vec<String> = Vec::new();
+        let (mut freedom, mut second_order) = (None, Vec::new());
         let (terms, moved) = match simulation {
-            Ok(mut simulation) => (simulation.terms(), Some(simulation.projection().moved)),
+            Ok(mut simulation) => {
+                freedom = simulation.freedom();
+                let name = |id: &ParticleId| system.particle_names()[id.index()].clone();
+                let cliques = simulation.second_order().iter();
+                second_order = cliques.map(|clique| clique.particles.iter().map(name).collect()).collect();
+                (simulation.terms(), Some(simulation.projection().moved))
+            }
             Err(error) => {
                 warnings.push(error.to_string());
                 (start.clone(), None)
@@ -136,7 +147,11 @@ impl Findings {
         let open_rows = on_free().filter(|&row| terms.is_open[row]).count();
         let rows = on_free().count() - open_rows;
         // Where the constraints cannot hold, the system has no configuration whose rank could be counted.
-        let rank = terms.rank.filter(|_| feasible);
+        // Where rods hold only to second order, roundoff would decide about the rank of A.
+        let rank = match freedom {
+            Some(freedom) => Some(coordinates - freedom.here),
+            None => terms.rank.filter(|_| feasible),
+        };
         Findings {
             valid: true,
             scene: scene.name.clone(),
@@ -154,6 +169,8 @@ impl Findings {
             start_moved: moved,
             rank,
             degrees_of_freedom: rank.map(|rank| coordinates.saturating_sub(rank)),
+            degrees_of_freedom_nearby: freedom.map(|freedom| freedom.nearby),
+            second_order,
             states_of_self_stress: rank.map(|rank| rows.saturating_sub(rank)),
             // The rank is not counted only where A is singular.
             redundant: feasible.then(|| rank.is_none_or(|rank| rank < rows)),
@@ -181,7 +198,9 @@ impl Findings {
         match (self.rank, self.degrees_of_freedom, self.states_of_self_stress) {
             (Some(rank), Some(freedom), Some(stress)) => {
                 lines.push(("rank", format!("{rank}: {}", redundancy(stress))));
-                lines.push(("freedom", freedoms(freedom)));
+                let nearby = self.degrees_of_freedom_nearby;
+                let nearby = nearby.map(|nearby| format!(" at this position, {nearby} of the mechanism near by"));
+                lines.push(("freedom", freedoms(freedom) + &nearby.unwrap_or_default()));
             }
             _ if self.feasible => {
                 lines.push(("rank", "some rows are redundant; the system is too large to count them".into()));

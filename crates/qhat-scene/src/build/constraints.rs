@@ -41,13 +41,19 @@ impl Assembly<'_, '_, '_> {
 
     /// The name, with a number behind it where it is taken: two rods between the same particles are allowed.
     pub(super) fn free_name(&mut self, wanted: String) -> String {
-        let mut name = wanted.clone();
-        let mut number = 2;
-        while !self.constraint_names.insert(name.clone()) {
-            name = format!("{wanted}({number})");
-            number += 1;
+        if self.constraint_names.insert(wanted.clone()) {
+            return wanted;
         }
-        name
+        // Names are never given back, so the search goes on where the last one for this name ended: a thousand equal
+        // names take a thousand tries.
+        let number = self.next_numbers.entry(wanted.clone()).or_insert(2);
+        loop {
+            let name = format!("{wanted}({number})");
+            *number += 1;
+            if self.constraint_names.insert(name.clone()) {
+                return name;
+            }
+        }
     }
 
     /// Takes the names that the scene gives, before any default name is made.

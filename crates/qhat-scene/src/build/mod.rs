@@ -54,6 +54,8 @@ struct Assembly<'a, 'r, 't> {
     /// The numbers that every expression of the scene may refer to.
     parameters: Parameters,
     constraint_names: HashSet<String>,
+    /// The number to try next behind a default name that is taken.
+    next_numbers: HashMap<String, u64>,
     /// Forces as expressions, whose values at the start have yet to be checked.
     untried: Vec<Untried>,
     places: Places,
@@ -72,6 +74,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         ids: Ids::default(),
         parameters: Parameters::new(),
         constraint_names: HashSet::new(),
+        next_numbers: HashMap::new(),
         untried: Vec::new(),
         places: Places::new(),
     };
@@ -155,7 +158,11 @@ impl Assembly<'_, '_, '_> {
 fn place_of(error: &BuildError, tree: &Node, ids: &Ids, places: &Places) -> Range<usize> {
     match error {
         BuildError::Particle { name, .. } => ids.origin(name).unwrap_or(0..0),
-        BuildError::Constraint { name, .. } if places.contains_key(name) => places[name].clone(),
+        BuildError::Constraint { name, .. } | BuildError::TooLarge { constraint: name, .. }
+            if places.contains_key(name) =>
+        {
+            places[name].clone()
+        }
         BuildError::Constraint { .. } | BuildError::TooLarge { .. } => tree.key("constraints").span.clone(),
         BuildError::Force { .. } => tree.key("forces").span.clone(),
         BuildError::Settings(_) => tree.key("feedback").span.clone(),

@@ -4,7 +4,7 @@ use super::Assembly;
 use crate::model::rods::{Distance, DistanceForm, Rigid};
 use crate::model::{Driven, Id, Named};
 use crate::tree::Node;
-use qhat::{ParticleId, rigid_rods};
+use qhat::{ParticleId, RigidCluster, rigid_cluster};
 
 impl Assembly<'_, '_, '_> {
     pub(super) fn add_distance(&mut self, it: &Distance, place: &Node) -> Option<()> {
@@ -74,16 +74,21 @@ impl Assembly<'_, '_, '_> {
 
     pub(super) fn add_rigid(&mut self, it: &Rigid, place: &Node) -> Option<()> {
         let list = place.key("particles");
-        let particles = self.particles(&it.particles, list)?;
+        let particles = self.different(&it.particles, list)?;
         let points: Vec<[f64; 3]> = particles.iter().map(|id| self.start(*id)).collect();
-        match rigid_rods(self.dimension_of_system(), &points) {
-            Ok(rods) => {
+        match rigid_cluster(self.dimension_of_system(), &points) {
+            Ok(RigidCluster { rods, combinations }) => {
                 for ends in rods {
                     let [a, b] = ends.map(|end| &it.particles[end].0);
                     let name = self.free_name(format!("{a}-{b}"));
                     let [a, b] = ends.map(|end| particles[end]);
                     let rod = qhat::Distance::new(a, b, self.distance(a, b));
                     self.builder.constraint(name, rod);
+                }
+                for terms in combinations {
+                    let name = self.free_name(format!("rigid({})", it.particles[terms[0].0].0));
+                    let terms: Vec<_> = terms.into_iter().map(|(k, weight)| (particles[k], weight)).collect();
+                    self.builder.constraint(name, qhat::Relation::homogeneous(terms));
                 }
                 Some(())
             }

@@ -4,7 +4,7 @@ use super::error::ConstraintError;
 use crate::allowed::ValueError;
 use crate::driven::Driven;
 use crate::number::Number;
-use crate::space::ParticleId;
+use crate::space::{ParticleId, first_repeated};
 
 /// A point or vector whose components may be driven; the third is ignored in two dimensions.
 pub type DrivenPoint = [Driven; 3];
@@ -79,7 +79,5 @@ pub(super) fn check_different(
     particles: impl Iterator<Item = ParticleId>,
     what: &'static str,
 ) -> Result<(), ConstraintError> {
-    let particles: Vec<_> = particles.collect();
-    let twice = (1..particles.len()).any(|i| particles[..i].contains(&particles[i]));
-    if twice { Err(ConstraintError::NamedTwice { what }) } else { Ok(()) }
+    if first_repeated(particles).is_some() { Err(ConstraintError::NamedTwice { what }) } else { Ok(()) }
 }

@@ -15,7 +15,8 @@ use super::error::ConstraintError;
 use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::driven::Driven;
 use crate::number::{Number, minus};
-use crate::space::ParticleId;
+use crate::point::Motion;
+use crate::space::{ParticleId, first_repeated};
 
 /// A polygon that keeps its area, in the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,11 +53,16 @@ impl Smooth for Area {
         self.area.value(0.0).abs().max(extent * extent)
     }
 
+    /// Each coordinate of a corner is in two entries of ½, one for each neighbour.
+    fn curvature_bound<const D: usize>(&self, _: Motion<'_, D>) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn check(&self) -> Result<(), ConstraintError> {
         if self.corners.len() < 3 {
             return Err(ConstraintError::PolygonCorners { count: self.corners.len() });
         }
-        if let Some(corner) = (1..self.corners.len()).find(|&i| self.corners[..i].contains(&self.corners[i])) {
+        if let Some(corner) = first_repeated(self.corners.iter().copied()) {
             return Err(ConstraintError::PolygonCornerTwice { corner });
         }
         Ok(self.area.check("an area")?)

@@ -95,15 +95,15 @@ impl ExpressionConstraint {
 
 impl Start {
     fn measure<const D: usize>(expression: &Expression, q: &[f64]) -> Self {
-        let qd = vec![0.0; q.len()];
         let mut gradient = [0.0; LONGEST_GRADIENT];
-        let (jet, Ct) = expression.jet_and_gradient(q, &qd, 0.0, &mut gradient);
+        // At rest: zeros for every particle would make n constraints take n² numbers.
+        let (jet, Ct) = expression.jet_and_gradient(q, &[], 0.0, &mut gradient);
         let gradient = &gradient[..expression.gradient_len()];
         let is_finite = [jet.value, jet.second, Ct].iter().chain(gradient).all(|number| number.is_finite());
         let slope = gradient.chunks_exact(D).map(|g| norm(point::<D>(g))).fold(0.0, f64::max);
         let mut bend = 0.0_f64;
         let mut is_bounded = true;
-        expression.hessian_blocks::<D>(Motion { q, qd: &qd, t: 0.0 }, &mut |i, j, block| {
+        expression.hessian_blocks::<D>(Motion { q, qd: &[], t: 0.0 }, &mut |i, j, block| {
             is_bounded &= size(&block).is_finite();
             if i == j {
                 bend = block.iter().flatten().fold(bend, |most, entry| most.max(entry.abs()));

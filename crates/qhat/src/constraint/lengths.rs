@@ -15,11 +15,13 @@
 
 use super::arms::Arms;
 use super::error::ConstraintError;
-use super::smooth::{At, Gradient, Residual, Smooth};
+use super::smooth::{At, Gradient, LONG, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
-use crate::number::{Number, norm, scaled};
+use crate::number::{Number, minus, norm, scaled};
+use crate::point::Motion;
 use crate::space::ParticleId;
+use std::collections::BTreeMap;
 
 /// A weighted sum of distances that is held at a length.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +81,24 @@ impl Smooth for Lengths {
 
     fn scale(&self, extent: f64) -> f64 {
         extent * self.weights.iter().fold(0.0, |most: f64, weight| most.max(weight.abs()))
+    }
+
+    /// An arm of weight w adds w (I − nnᵀ)/|d| to the blocks of its ends, and its negative between them: at most
+    /// 2 √D |w|/|d| to the sum of a column.
+    fn curvature_bound<const D: usize>(&self, motion: Motion<'_, D>) -> Option<f64> {
+        if self.segments.particles().len() <= LONG {
+            return None;
+        }
+        let mut sums = BTreeMap::new();
+        for ([a, b], weight) in self.segments() {
+            let length = norm(minus(motion.x(b), motion.x(a)));
+            if length > 0.0 {
+                for end in [a, b] {
+                    *sums.entry(end).or_insert(0.0) += 2.0 * (D as f64).sqrt() * weight.abs() / length;
+                }
+            }
+        }
+        Some(sums.into_values().fold(0.0, f64::max))
     }
 
     fn check(&self) -> Result<(), ConstraintError> {

@@ -11,7 +11,8 @@ use super::smooth::{At, Gradient, Residual, Smooth};
 use crate::allowed::finite;
 use crate::driven::Driven;
 use crate::number::Number;
-use crate::space::ParticleId;
+use crate::point::Motion;
+use crate::space::{ParticleId, first_repeated};
 
 /// A weighted sum of positions that is held at a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,15 +80,20 @@ impl Smooth for Relation {
         extent * self.terms.iter().fold(0.0, |most: f64, (_, weight)| most.max(weight.abs()))
     }
 
+    /// C is linear.
+    fn curvature_bound<const D: usize>(&self, _: Motion<'_, D>) -> Option<f64> {
+        Some(0.0)
+    }
+
     fn check(&self) -> Result<(), ConstraintError> {
-        for (term, (particle, weight)) in self.terms.iter().enumerate() {
+        for (term, (_, weight)) in self.terms.iter().enumerate() {
             finite("a weight", *weight)?;
             if *weight == 0.0 {
                 return Err(ConstraintError::NoWeight { term });
             }
-            if self.terms[..term].iter().any(|(other, _)| other == particle) {
-                return Err(ConstraintError::TwoWeights { term });
-            }
+        }
+        if let Some(term) = first_repeated(self.terms.iter().map(|(particle, _)| *particle)) {
+            return Err(ConstraintError::TwoWeights { term });
         }
         if self.terms.is_empty() {
             return Err(ConstraintError::NoTerms);

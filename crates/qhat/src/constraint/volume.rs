@@ -13,9 +13,10 @@
 //! gradient vanishes there.
 
 use super::error::ConstraintError;
-use super::smooth::{At, Gradient, Residual, Smooth};
+use super::smooth::{At, Gradient, LONG, Residual, Smooth};
 use crate::driven::Driven;
-use crate::number::{Number, cross, dot, minus, plus, raised};
+use crate::number::{Number, cross, dot, minus, norm, plus, raised};
+use crate::point::Motion;
 use crate::space::ParticleId;
 use std::collections::HashSet;
 
@@ -87,6 +88,20 @@ impl Smooth for Volume {
 
     fn scale(&self, extent: f64) -> f64 {
         self.volume.value(0.0).abs().max(extent * extent * extent)
+    }
+
+    /// The blocks of two corners b, c of the faces around a particle are ⅙ [x]× of the third corner. In a closed mesh
+    /// the faces at an edge leave differences of corners, so that ⅙ Σ |x_c − x_b| √2 bounds the sum of a column.
+    fn curvature_bound<const D: usize>(&self, motion: Motion<'_, D>) -> Option<f64> {
+        if self.particles.len() <= LONG {
+            return None;
+        }
+        let x = |i: usize| raised(motion.x(self.particles[i]));
+        let around = |i: usize, faces: &Vec<[usize; 2]>| -> f64 {
+            let reach = |&[b, c]: &[usize; 2]| norm(minus(x(b), x(i))) + norm(minus(x(c), x(i)));
+            faces.iter().map(reach).sum::<f64>() * std::f64::consts::SQRT_2 / 6.0
+        };
+        Some(self.around.iter().enumerate().map(|(i, faces)| around(i, faces)).fold(0.0, f64::max))
     }
 
     fn check(&self) -> Result<(), ConstraintError> {

@@ -120,7 +120,9 @@ impl EventFunctions<'_> {
         for (breakable, &broken) in system.contacts.breakables.iter().zip(&modes.broken) {
             let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, larger);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
-            event_functions.push(if broken { f64::INFINITY } else { reserve });
+            // A tension that is noise breaks nothing.
+            let holds = broken || system.is_second_order(breakable.constraint);
+            event_functions.push(if holds { f64::INFINITY } else { reserve });
         }
     }
 }

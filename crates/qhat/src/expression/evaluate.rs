@@ -56,8 +56,17 @@ pub struct Jet {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct At<'a> {
     pub(super) q: &'a [f64],
+    /// Empty where everything is at rest.
     pub(super) qd: &'a [f64],
     pub(super) t: f64,
+}
+
+impl At<'_> {
+    /// The rate of one coordinate.
+    #[inline(always)]
+    fn rate(&self, i: usize) -> f64 {
+        if self.qd.is_empty() { 0.0 } else { self.qd[i] }
+    }
 }
 
 /// The numbers of one instruction: its value, two of its derivatives, and its adjoint. Of a Hessian: the value, the
@@ -92,7 +101,7 @@ impl Tape {
             v = match *instruction {
                 Constant(bits) => f64::from_bits(bits),
                 Position(i) => at.q[i],
-                Velocity(i) => at.qd[i],
+                Velocity(i) => at.rate(i),
                 Time => at.t,
                 Apply(operation, a, b) => operation.value(room[usize::from(a)][0], room[usize::from(b)][0]),
             };
@@ -107,8 +116,8 @@ impl Tape {
         for (k, instruction) in self.instructions.iter().enumerate() {
             jet = match *instruction {
                 Constant(bits) => Jet { value: f64::from_bits(bits), first: 0.0, second: 0.0 },
-                Position(i) => Jet { value: at.q[i], first: at.qd[i], second: 0.0 },
-                Velocity(i) => Jet { value: at.qd[i], first: 0.0, second: 0.0 },
+                Position(i) => Jet { value: at.q[i], first: at.rate(i), second: 0.0 },
+                Velocity(i) => Jet { value: at.rate(i), first: 0.0, second: 0.0 },
                 Time => Jet { value: at.t, first: 1.0, second: 0.0 },
                 Apply(operation, a, b) => {
                     let [a, a1, a2, _] = room[usize::from(a)];

@@ -12,7 +12,7 @@ use super::{Acts, Dependence, ForceError};
 use crate::hyper::{Hyper, gradient, hessian_blocks, jet};
 use crate::linalg::block::{Block, transposed};
 use crate::point::{Motion, add};
-use crate::space::ParticleId;
+use crate::space::{ParticleId, first_repeated};
 use crate::stiffness::Stiffness;
 use std::fmt;
 use std::sync::Arc;
@@ -163,7 +163,7 @@ impl Acts for CustomForce {
         if named.is_empty() {
             return Err(ForceError::CustomWithoutParticles);
         }
-        match (1..named.len()).any(|i| named[..i].contains(&named[i])) {
+        match first_repeated(named.iter().copied()).is_some() {
             true => Err(ForceError::NamedTwice { what: "a custom force" }),
             false => Ok(()),
         }

@@ -29,7 +29,7 @@ impl TensionWatch {
     pub(crate) fn note(&mut self, system: &System, state: &State) {
         let links = system.constraints.iter().enumerate().filter(|(_, named)| named.constraint.as_link().is_some());
         let tensions = self.workspace.tension(system, state, &self.feedback);
-        for ((place, _), tension) in links.zip(tensions) {
+        for ((place, _), tension) in links.zip(tensions).filter(|((place, _), _)| !system.is_second_order(*place)) {
             let largest = MaxTension { tension, link: ConstraintId(place), time: state.t };
             self.largest = MaxTension::larger(self.largest, Some(largest));
         }

@@ -8,11 +8,17 @@ use super::Incidence;
 
 pub(crate) const NONE: u32 = u32::MAX;
 
+/// The most entries of L that are counted. With this many a factor takes 2.5 GiB, more than the builder of a system
+/// accepts, and a count to the end could take hours.
+const MOST_ENTRIES: u64 = 1 << 27;
+
 /// The elimination tree and the number of entries below the diagonal in each column of L.
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination {
     pub(crate) parent: Vec<u32>,
     pub(crate) below: Vec<u32>,
+    /// Whether the count ended early, at `MOST_ENTRIES`.
+    pub(crate) is_cut_short: bool,
 }
 
 impl Elimination {
@@ -21,7 +27,11 @@ impl Elimination {
         let n = incidence.unknowns();
         let (mut parent, mut seen, mut below) = (vec![NONE; n], vec![NONE; n], vec![0; n]);
         let mut columns = Vec::new();
+        let mut entries = n as u64;
         for k in 0..n as u32 {
+            if entries > MOST_ENTRIES {
+                break;
+            }
             seen[k as usize] = k;
             incidence.columns(k, &mut columns);
             for &column in &columns {
@@ -31,12 +41,13 @@ impl Elimination {
                         parent[i] = k;
                     }
                     below[i] += 1;
+                    entries += 1;
                     seen[i] = k;
                     i = parent[i] as usize;
                 }
             }
         }
-        Elimination { parent, below }
+        Elimination { parent, below, is_cut_short: entries > MOST_ENTRIES }
     }
 
     /// Entries of L, its diagonal among them.

@@ -104,6 +104,11 @@ impl Incidence {
         &self.at[self.at_start[point as usize] as usize..self.at_start[point as usize + 1] as usize]
     }
 
+    /// The place of the first unknown at a point where the lists of all points stand one after the other.
+    pub(crate) fn first_at(&self, point: u32) -> usize {
+        self.at_start[point as usize] as usize
+    }
+
     /// The columns left of the diagonal in row k of the coupling matrix, ascending, each once.
     pub(crate) fn columns(&self, k: u32, out: &mut Vec<u32>) {
         out.clear();

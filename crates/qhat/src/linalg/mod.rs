@@ -32,7 +32,7 @@ pub(crate) use plan::EliminationPlan;
 pub use plan::{Component, ComponentKind, FactorMethod};
 pub(crate) use rank::rank_of;
 pub use symmetric::SymmetricMatrix;
-pub(crate) use symmetric::{Lower, Pattern};
+pub(crate) use symmetric::{Lower, OuterProducts, Pattern};
 
 use dense::DenseLdl;
 use fronts::FrontPlan;

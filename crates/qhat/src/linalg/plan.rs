@@ -125,13 +125,17 @@ impl EliminationPlan {
                 }
                 _ => order(&incidence.part(&unknowns, &mut scratch), kind),
             };
-            let method = if elimination.factor_flops() >= BLOCKED_FROM * elimination.entries() {
+            let method = if elimination.is_cut_short {
+                FactorMethod::Simplicial
+            } else if elimination.factor_flops() >= BLOCKED_FROM * elimination.entries() {
                 FactorMethod::Multifrontal
             } else {
                 FactorMethod::Simplicial
             };
             let (again, widths) = match method {
                 FactorMethod::Multifrontal => elimination.fronts(),
+                // A factor of this size is refused, so that its order does not matter.
+                _ if elimination.is_cut_short => ((0..unknowns.len() as u32).collect(), Vec::new()),
                 _ => (elimination.postorder(), Vec::new()),
             };
             let order = again.iter().map(|&k| unknowns[order[k as usize] as usize]);

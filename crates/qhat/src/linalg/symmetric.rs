@@ -77,19 +77,78 @@ impl Pattern {
     }
 }
 
-/// A symmetric sparse matrix, as [`crate::Terms`] shows it.
+/// A symmetric sparse matrix, as [`crate::Terms`] shows it. A particle with very many rows couples each of them with
+/// every other: its part is kept as the outer products that it is, so that the memory stays in proportion to the number
+/// of rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SymmetricMatrix {
     pub(crate) pattern: Pattern,
     pub(crate) values: Vec<f64>,
+    pub(crate) outer: OuterProducts,
+}
+
+/// Σ_c w_c b_c b_cᵀ over columns c: numbers w, and vectors b with few entries that are not zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct OuterProducts {
+    weight: Vec<f64>,
+    /// The entries of each row, its columns ascending; empty if there are no columns.
+    rows: Vec<Vec<(u32, f64)>>,
+}
+
+impl OuterProducts {
+    /// No entries yet, for `order` rows and columns with these weights.
+    pub(crate) fn new(order: usize, weight: Vec<f64>) -> Self {
+        let rows = if weight.is_empty() { Vec::new() } else { vec![Vec::new(); order] };
+        OuterProducts { weight, rows }
+    }
+
+    /// Writes one entry of a vector b; the columns of a row must ascend.
+    pub(crate) fn push(&mut self, row: usize, column: usize, value: f64) {
+        self.rows[row].push((column as u32, value));
+    }
+
+    fn row(&self, i: usize) -> &[(u32, f64)] {
+        self.rows.get(i).map_or(&[], Vec::as_slice)
+    }
+
+    fn stored(&self) -> usize {
+        self.rows.iter().map(Vec::len).sum()
+    }
+
+    /// Entry (i, j); `None` where no column has both rows.
+    fn get(&self, i: usize, j: usize) -> Option<f64> {
+        let (mut left, mut right) = (self.row(i), self.row(j));
+        let mut sum = None;
+        while let (Some(&(c, a)), Some(&(d, b))) = (left.first(), right.first()) {
+            if c == d {
+                *sum.get_or_insert(0.0) += self.weight[c as usize] * a * b;
+            }
+            left = if c <= d { &left[1..] } else { left };
+            right = if d <= c { &right[1..] } else { right };
+        }
+        sum
+    }
+
+    /// out += Σ w b bᵀ x.
+    fn multiply(&self, x: &[f64], out: &mut [f64]) {
+        let mut y = vec![0.0; self.weight.len()];
+        for (row, x) in self.rows.iter().zip(x) {
+            row.iter().for_each(|&(c, b)| y[c as usize] += b * x);
+        }
+        y.iter_mut().zip(&self.weight).for_each(|(y, w)| *y *= w);
+        for (row, out) in self.rows.iter().zip(out) {
+            row.iter().for_each(|&(c, b)| *out += b * y[c as usize]);
+        }
+    }
 }
 
 /// A list of rows of the lower triangle, each a list of pairs: a column and its number.
 #[cfg(feature = "serde")]
 impl serde::Serialize for SymmetricMatrix {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Pattern { start, column } = &self.pattern;
-        let row = |i: usize| (start[i]..start[i + 1]).map(|slot| (column[slot], self.values[slot])).collect::<Vec<_>>();
+        let may_be_nonzero = |i, j| self.pattern.slot(i, j).is_some() || self.outer.get(i, j).is_some();
+        let columns = |i: usize| (0..=i).filter(move |&j| may_be_nonzero(i, j));
+        let row = |i: usize| columns(i).map(|j| (j, self.get(i, j))).collect::<Vec<_>>();
         serializer.collect_seq((0..self.order()).map(row))
     }
 }
@@ -100,15 +159,17 @@ impl SymmetricMatrix {
         self.pattern.order()
     }
 
-    /// Number of entries of the lower triangle that may be nonzero.
+    /// How many numbers are stored: the entries of the lower triangle that may be nonzero, where the part of a particle
+    /// with very many rows counts one number for each row and dimension.
     pub fn stored(&self) -> usize {
-        self.pattern.len()
+        self.pattern.len() + self.outer.stored()
     }
 
     /// Entry (i, j); zero where the pattern has none.
     pub fn get(&self, i: usize, j: usize) -> f64 {
         let (row, column) = if j <= i { (i, j) } else { (j, i) };
-        self.pattern.slot(row, column).map_or(0.0, |slot| self.values[slot])
+        let sparse = self.pattern.slot(row, column).map_or(0.0, |slot| self.values[slot]);
+        self.outer.get(row, column).map_or(sparse, |outer| sparse + outer)
     }
 
     /// The whole matrix, row after row, zeros included: for display and for tests.
@@ -116,10 +177,9 @@ impl SymmetricMatrix {
         let m = self.order();
         let mut dense = vec![0.0; m * m];
         for i in 0..m {
-            for slot in self.pattern.start[i]..self.pattern.start[i + 1] {
-                let j = self.pattern.column[slot];
-                dense[i * m + j] = self.values[slot];
-                dense[j * m + i] = self.values[slot];
+            for j in 0..=i {
+                dense[i * m + j] = self.get(i, j);
+                dense[j * m + i] = dense[i * m + j];
             }
         }
         dense
@@ -128,6 +188,7 @@ impl SymmetricMatrix {
     /// out = A x.
     pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
         self.pattern.multiply(&self.values, x, out);
+        self.outer.multiply(x, out);
     }
 }
 

@@ -19,9 +19,9 @@
 
 use crate::constraint::Jacobian;
 use crate::linalg::block::vector;
-use crate::linalg::{Incidence, Pattern, SymmetricMatrix};
+use crate::linalg::{Hubs, Incidence, OuterProducts, Pattern, SymmetricMatrix};
 use crate::point::{dot, scaled};
-use crate::structure::MatrixStructure;
+use crate::structure::{MatrixStructure, blocks_at};
 
 impl MatrixStructure {
     /// Writes A = J W Jᵀ, with hubs in the form above.
@@ -53,23 +53,42 @@ impl MatrixStructure {
         }
     }
 
-    /// J W Jᵀ with its rows in the order of the user and without unknowns for hubs, for terms.
+    /// J W Jᵀ with its rows in the order of the user and without unknowns for hubs, for terms. The part of a hub is
+    /// kept as outer products: entry by entry it would be as large as the square of its rows.
     pub(crate) fn in_given_order<const D: usize>(&self, J: &Jacobian, W: &[f64]) -> SymmetricMatrix {
         let m = J.row_count();
         let moving = |row: usize| J.row(row).filter(move |(particle, _)| !self.inert[row] && W[particle.0] > 0.0);
-        let incidence = Incidence::new(W.len(), (0..m).map(|row| moving(row).map(|(particle, _)| particle.0 as u32)));
+        let points = |row: usize| moving(row).map(|(particle, _)| particle.0 as u32);
+        let hubs = Hubs::new(&Incidence::new(W.len(), (0..m).map(points)), D);
+        let inner = |row: usize| points(row).filter(|&p| hubs.number(p).is_none());
+        let incidence = Incidence::new(W.len(), (0..m).map(inner));
         let pattern = Pattern::of_incidence(&incidence);
+        let blocks = blocks_at(&incidence, &J.layout, |row| Some(row as usize));
         let mut values = vec![0.0; pattern.len()];
+        let weights = hubs.points.iter().flat_map(|&p| [W[p as usize]; D]);
+        let mut outer = OuterProducts::new(m, weights.collect());
+        // The slot of each column of the row at hand.
+        let mut slot_of = vec![0; m];
         for i in 0..m {
             for slot in pattern.start[i]..pattern.start[i + 1] {
-                for (particle, left) in moving(i) {
-                    for (_, right) in moving(pattern.column[slot]).filter(|(other, _)| *other == particle) {
-                        let (left, right) = (vector::<D>(left, 0), vector::<D>(right, 0));
-                        values[slot] += dot(scaled(W[particle.0], left), right);
-                    }
+                slot_of[pattern.column[slot]] = slot;
+            }
+            let mut on_hubs: Vec<(usize, f64)> = Vec::new();
+            for (particle, numbers) in moving(i) {
+                let p = particle.0 as u32;
+                if let Some(hub) = hubs.number(p) {
+                    on_hubs.extend(numbers.iter().enumerate().map(|(k, &number)| (hub * D + k, number)));
+                    continue;
+                }
+                let left = scaled(W[particle.0], vector::<D>(numbers, 0));
+                let others = incidence.unknowns_at(p).iter().zip(&blocks[incidence.first_at(p)..]);
+                for (&j, &right) in others.take_while(|&(&j, _)| j as usize <= i) {
+                    values[slot_of[j as usize]] += dot(left, J.entry::<D>(right as usize));
                 }
             }
+            on_hubs.sort_by_key(|&(column, _)| column);
+            on_hubs.into_iter().for_each(|(column, number)| outer.push(i, column, number));
         }
-        SymmetricMatrix { pattern, values }
+        SymmetricMatrix { pattern, values, outer }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! `equation.rs` solves it; its parts are `rhs.rs` (b), `matrix.rs` (A), `factor.rs` and `singular.rs` (λ),
 //! `reaction.rs` (Q̂ and q̈) and `friction.rs` (F). `active.rs` keeps the rows of inactive constraints out of it,
-//! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored.
+//! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored;
+//! `second_order.rs` finds rods that hold only to second order.
 
 mod active;
 mod equation;
@@ -13,6 +14,7 @@ mod memory;
 mod pushes;
 mod reaction;
 mod rhs;
+mod second_order;
 mod singular;
 #[cfg(test)]
 mod tests;
@@ -20,6 +22,8 @@ mod tests;
 pub(crate) use factor::{MultiplierSolver, SolveFor};
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use rhs::RightHandSide;
+pub use second_order::Freedom;
+pub(crate) use second_order::{freedom, second_order};
 
 use crate::constraint::Rows;
 use crate::report::Warning;
@@ -90,6 +94,9 @@ impl Equation {
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });
+        }
+        if !system.second_order.is_empty() {
+            warnings.push(Warning::SecondOrder { joints: system.names_of_cliques() });
         }
         if self.solver.singular {
             warnings.push(Warning::Singular);

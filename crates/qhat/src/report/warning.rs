@@ -16,6 +16,12 @@ pub enum Warning {
         /// Their names.
         rows: Vec<String>,
     },
+    /// Joints in a line, or in space in a plane, that rods hold only to second order: the tensions of these rods are
+    /// noise, and `breaks_at` does not act on them.
+    SecondOrder {
+        /// The names of the joints of each such group.
+        joints: Vec<Vec<String>>,
+    },
     /// Auto went over to bdf2: accurate substeps would have taken more work than a frame is allowed.
     TooStiff {
         /// The number of substeps that the frame is allowed.
@@ -95,6 +101,13 @@ impl fmt::Display for Warning {
                  form of the constraint, or start elsewhere (diagonal drag hides this)",
                 rows.join(", ")
             ),
+            Warning::SecondOrder { joints } => write!(
+                f,
+                "rods hold {} in a line or plane only to second order: the motion is right, but the tensions of these \
+                 rods have no meaning, and `breaks_at` does not act on them. Hold these joints by \
+                 `kind = \"rigid\"`, or one joint between two others by `kind = \"line\"`",
+                groups(joints)
+            ),
             Warning::TooStiff { substeps } => write!(
                 f,
                 "the motion is too stiff for the {substeps} substeps that frame_work and max_substeps allow a frame, \
@@ -126,6 +139,23 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// Groups of names in words.
+fn groups(groups: &[Vec<String>]) -> String {
+    /// The most names of a group, and the most groups, that are written.
+    const NAMES: usize = 6;
+    const GROUPS: usize = 3;
+    let more = |count: usize, most: usize, what: &str| match count.saturating_sub(most) {
+        0 => String::new(),
+        more => format!(" and {more} more{what}"),
+    };
+    let in_words = |names: &Vec<String>| {
+        let quoted: Vec<String> = names.iter().take(NAMES).map(|name| format!("`{name}`")).collect();
+        format!("{}{}", quoted.join(", "), more(names.len(), NAMES, ""))
+    };
+    let written: Vec<String> = groups.iter().take(GROUPS).map(in_words).collect();
+    format!("{}{}", written.join("; "), more(groups.len(), GROUPS, " groups"))
 }
 
 /// A warning of a run, and when it was raised.

@@ -8,9 +8,11 @@ mod look;
 use crate::energy::Energy;
 use crate::error::StepError;
 use crate::integrate::{Workspace, check_energy, check_finds_events, check_start, project, step_for};
+use crate::multiplier::{Freedom, freedom, second_order};
 use crate::report::{Projection, StepReport, WarningLog};
 use crate::settings::{Settings, SettingsError};
 use crate::state::State;
+use crate::structure::FlatClique;
 use crate::system::System;
 use account::EnergyAccount;
 
@@ -62,6 +64,8 @@ impl Simulation {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
         check_start(&self.system, &self.state, &self.settings)?;
+        let cliques = second_order(&self.system, &self.state);
+        self.system.set_second_order(cliques);
         self.account = EnergyAccount::open(&self.system, &self.state);
         self.log = WarningLog::default();
         Ok(())
@@ -126,6 +130,19 @@ impl Simulation {
     /// The change that made the start consistent.
     pub fn projection(&self) -> &Projection {
         &self.projection
+    }
+
+    /// The joints that rods hold only to second order, found at the start: three in a line whose rods' lengths add up
+    /// and that no other row holds across it, four in a plane in space with all their distances. The motion is right.
+    /// The tensions of these rods are noise, which [`StepReport::max_tension`] leaves out and which breaks nothing.
+    pub fn second_order(&self) -> &[FlatClique] {
+        &self.system.second_order
+    }
+
+    /// The degrees of freedom at the present position and of the mechanism near by, which differ where rods hold only
+    /// to second order; `None` where none do, or where the system is too large for its rank to be counted.
+    pub fn freedom(&self) -> Option<Freedom> {
+        freedom(&self.system, &self.state)
     }
 
     /// The energy account at the present state.

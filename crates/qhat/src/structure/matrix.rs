@@ -56,6 +56,8 @@ pub(crate) struct MatrixPlan {
     inert: Vec<bool>,
     /// The components of A, without the rows that cannot act.
     pub(crate) components: Vec<Component>,
+    /// The row from which each component was found.
+    found_from: Vec<usize>,
 }
 
 impl MatrixPlan {
@@ -74,10 +76,18 @@ impl MatrixPlan {
         let hubs = Hubs::new(&incidence, dimension);
         let plan = EliminationPlan::with_hubs(&incidence, &hubs);
         let acting = plan.components.iter().zip(&plan.found_from).filter(|&(_, &row)| !inert[row as usize]);
+        let found_from = acting.clone().map(|(_, &row)| row as usize).collect();
         let components = acting.map(|(component, _)| *component);
         let components =
             if m <= DENSE_UP_TO { components.map(Component::dense).collect() } else { components.collect() };
-        MatrixPlan { incidence, hubs, plan, inert, components }
+        MatrixPlan { incidence, hubs, plan, inert, components, found_from }
+    }
+
+    /// A row of the component whose factor takes most memory, and the number of its rows.
+    pub(crate) fn largest(&self) -> Option<(usize, usize)> {
+        let all = self.components.iter().zip(&self.found_from);
+        let (largest, &row) = all.max_by_key(|(component, _)| component.memory)?;
+        Some((row, largest.rows))
     }
 
     /// Memory of the factor [bytes].
@@ -88,7 +98,7 @@ impl MatrixPlan {
 
 impl MatrixStructure {
     pub(crate) fn new(layout: &Layout, W: &[f64], planned: MatrixPlan) -> Self {
-        let MatrixPlan { incidence, hubs, plan, inert, components } = planned;
+        let MatrixPlan { incidence, hubs, plan, inert, components, .. } = planned;
         let m = layout.row_count();
         // A small matrix is factored densely, in the order of its rows.
         let order = if m <= DENSE_UP_TO { (0..m as u32).collect() } else { plan.order.clone() };
@@ -118,26 +128,28 @@ impl MatrixStructure {
         for (k, &row) in self.order.iter().enumerate().take(place.len()) {
             place[row as usize] = k;
         }
-        for (hub, &point) in hubs.points.iter().enumerate() {
-            let particle = ParticleId(point as usize);
-            for &row in incidence.unknowns_at(point) {
-                let entries = layout.start[row as usize]..layout.start[row as usize + 1];
-                for e in entries.filter(|&e| layout.particle[e] == particle) {
-                    for (c, unknown) in hubs.unknowns(incidence, hub).enumerate() {
-                        let (k, l) = (place[row as usize], place[unknown as usize]);
-                        if let Some(slot) = self.pattern.slot(k.max(l), k.min(l)) {
-                            let number = (e * hubs.width + c) as u32;
-                            self.on_hubs.push(OnHub { row: k as u32, slot: slot as u32, number, particle });
-                        }
+        for row in (0..if hubs.is_empty() { 0 } else { self.inert.len() }).filter(|&row| !self.inert[row]) {
+            for e in layout.start[row]..layout.start[row + 1] {
+                let particle = layout.particle[e];
+                let Some(hub) = hubs.number(particle.0 as u32) else { continue };
+                for (c, unknown) in hubs.unknowns(incidence, hub).enumerate() {
+                    let (k, l) = (place[row], place[unknown as usize]);
+                    if let Some(slot) = self.pattern.slot(k.max(l), k.min(l)) {
+                        let number = (e * hubs.width + c) as u32;
+                        self.on_hubs.push(OnHub { row: k as u32, slot: slot as u32, number, particle });
                     }
                 }
             }
         }
+        // Hub after hub, the rows of each ascending.
+        self.on_hubs.sort_by_key(|on_hub| on_hub.particle);
     }
 
     /// Finds the slots of all pairs of rows at each particle. The particles come in the order in which elimination
     /// touches them.
     fn meet(&mut self, layout: &Layout, particles: usize, incidence: &Incidence) {
+        let row_of = |unknown: u32| Some(self.order[unknown as usize] as usize).filter(|&row| row < self.inert.len());
+        let blocks = blocks_at(incidence, layout, row_of);
         let mut seen = vec![false; particles];
         for first in 0..self.order.len() as u32 {
             for &p in incidence.points_of(first) {
@@ -146,11 +158,8 @@ impl MatrixStructure {
                     continue;
                 }
                 let rows = incidence.unknowns_at(p);
+                self.blocks.extend(&blocks[incidence.first_at(p)..][..rows.len()]);
                 for (k, &left) in rows.iter().enumerate() {
-                    let row = self.order[left as usize] as usize;
-                    let entries = layout.start[row]..layout.start[row + 1];
-                    let here = entries.into_iter().find(|&e| layout.particle[e].0 == p as usize);
-                    self.blocks.extend(here.map(|e| e as u32));
                     let slots = rows[..=k].iter().filter_map(|&right| self.pattern.slot(left as usize, right as usize));
                     self.slots.extend(slots.map(|slot| slot as u32));
                 }
@@ -163,4 +172,24 @@ impl MatrixStructure {
     pub(crate) fn is_hub(&self, row: u32) -> bool {
         row as usize >= self.inert.len()
     }
+}
+
+/// The block of J of each row at each point, in the order of the lists `unknowns_at`, point after point. `row_of` gives
+/// the row of an unknown; `None` for an unknown of a hub. It takes time in proportion to the number of blocks, also
+/// where a row touches very many particles.
+pub(crate) fn blocks_at(incidence: &Incidence, layout: &Layout, row_of: impl Fn(u32) -> Option<usize>) -> Vec<u32> {
+    let mut next: Vec<usize> = (0..incidence.points() as u32).map(|p| incidence.first_at(p)).collect();
+    let mut blocks = vec![0; layout.particle.len()];
+    for unknown in 0..incidence.unknowns() as u32 {
+        // A row that cannot act touches no point; a particle that is fixed, or a hub, has no row in the incidence.
+        let Some(row) = row_of(unknown).filter(|_| !incidence.points_of(unknown).is_empty()) else { continue };
+        for e in layout.start[row]..layout.start[row + 1] {
+            let point = layout.particle[e].0;
+            if !incidence.unknowns_at(point as u32).is_empty() {
+                blocks[next[point]] = e as u32;
+                next[point] += 1;
+            }
+        }
+    }
+    blocks
 }

@@ -2,9 +2,12 @@
 //! the System is built: the pattern of A and its order of elimination, the chains, the contacts.
 
 pub(crate) mod chains;
+mod cliques;
 mod contacts;
 mod matrix;
 
 pub(crate) use chains::ChainPlan;
+pub use cliques::FlatClique;
+pub(crate) use cliques::{Classes, flat_cliques};
 pub(crate) use contacts::{Contact, Contacts};
-pub(crate) use matrix::{MatrixPlan, MatrixStructure};
+pub(crate) use matrix::{MatrixPlan, MatrixStructure, blocks_at};

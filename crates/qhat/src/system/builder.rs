@@ -10,10 +10,12 @@ use crate::settings::Feedback;
 use crate::space::{ConstraintId, Dimension, ForceId, ParticleId, in_dimension};
 use crate::state::State;
 use crate::structure::{Contacts, MatrixStructure};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::OnceLock;
 
-/// The largest factor of A that is accepted [bytes]: 16 GiB, more than computers that show such scenes have to spare.
-const MEMORY_LIMIT: u64 = 16 << 30;
+/// The largest factor of A that is accepted [bytes]: 2 GiB. The largest net of a scene, 1000 × 1000, takes about 1.2
+/// GiB (316 × 316: 92 MB). A run keeps a second factor for the tensions, and the page has 4 GiB in all.
+const MEMORY_LIMIT: u64 = 2 << 30;
 
 /// Collects particles, constraints and forces and checks them in [`SystemBuilder::build`].
 #[derive(Clone, Debug)]
@@ -23,6 +25,8 @@ pub struct SystemBuilder {
     constraints: Vec<(String, Constraint)>,
     forces: Vec<(Option<String>, Force)>,
     feedback: Feedback,
+    /// The particles by name, from the first expression on.
+    names: OnceLock<BTreeMap<String, ParticleId>>,
 }
 
 impl SystemBuilder {
@@ -33,13 +37,18 @@ impl SystemBuilder {
             constraints: Vec::new(),
             forces: Vec::new(),
             feedback: Feedback::NONE,
+            names: OnceLock::new(),
         }
     }
 
     /// Adds a particle; its id is its place.
     pub fn particle(&mut self, particle: Particle) -> ParticleId {
+        let id = ParticleId(self.particles.len());
+        if let Some(names) = self.names.get_mut() {
+            names.entry(particle.name.clone()).or_insert(id);
+        }
         self.particles.push(particle);
-        ParticleId(self.particles.len() - 1)
+        id
     }
 
     /// m \[kg\] of a particle that was added.
@@ -107,8 +116,12 @@ impl SystemBuilder {
     /// # Errors
     /// As [`Expression::parse`].
     pub fn expression(&self, purpose: Purpose, text: &str) -> Result<Expression, ExpressionError> {
-        let find = |name: &str| self.particles.iter().position(|particle| particle.name == name).map(ParticleId);
-        Expression::parse(text, &Scope::new(purpose, self.dimension, &find))
+        let names = self.names.get_or_init(|| {
+            // Of two particles with one name, which `build` refuses, the first counts.
+            let names = self.particles.iter().enumerate().rev();
+            names.map(|(place, particle)| (particle.name.clone(), ParticleId(place))).collect()
+        });
+        Expression::parse(text, &Scope::new(purpose, self.dimension, &|name| names.get(name).copied()))
     }
 
     /// Sets ks, kd, diagonal drag and elasticity (all off by default).
@@ -157,11 +170,16 @@ impl SystemBuilder {
             feedback: self.feedback,
             extent,
             contacts: Contacts::default(),
+            second_order: Vec::new(),
+            second_order_rods: Vec::new(),
         };
         system.set_constraints(self.constraints.clone());
         let plan = system.plan_matrix();
         if plan.memory() > MEMORY_LIMIT {
-            return Err(BuildError::TooLarge { memory: plan.memory(), limit: MEMORY_LIMIT });
+            let (first_row, rows) = plan.largest().unwrap_or_default();
+            let before = system.constraints.partition_point(|named| named.first_row <= first_row);
+            let constraint = system.constraints[before.saturating_sub(1)].name.clone();
+            return Err(BuildError::TooLarge { constraint, rows, memory: plan.memory(), limit: MEMORY_LIMIT });
         }
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, plan);
         let state = State { modes: Modes::at_first(&system.contacts), ..State::new(q, qd) };

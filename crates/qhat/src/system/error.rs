@@ -40,11 +40,15 @@ pub enum BuildError {
     },
     /// The factor of A would not fit.
     #[error(
-        "the constraints are so many and so closely connected that factoring them would take {} GiB of memory; \
-         the limit is {} GiB",
+        "the {rows} rows that hang together with constraint `{constraint}` are so closely connected that their factor \
+         would take {} GiB of memory; the limit is {} GiB",
         memory.div_ceil(1 << 30), limit >> 30
     )]
     TooLarge {
+        /// The first constraint of the largest connected part.
+        constraint: String,
+        /// The number of its rows.
+        rows: usize,
         /// The memory that it would take \[bytes\].
         memory: u64,
         /// The memory that is allowed \[bytes\].

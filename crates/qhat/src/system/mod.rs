@@ -16,9 +16,9 @@ use crate::force::{Acts, Force};
 use crate::linalg::Component;
 use crate::point::Motion;
 use crate::settings::Feedback;
-use crate::space::{Dimension, ParticleId};
+use crate::space::{ConstraintId, Dimension, ParticleId};
 use crate::state::State;
-use crate::structure::{ChainPlan, Contacts, MatrixPlan, MatrixStructure};
+use crate::structure::{ChainPlan, Contacts, FlatClique, MatrixPlan, MatrixStructure};
 
 /// Particles, constraints and forces; see [`System::builder`].
 #[derive(Clone, Debug)]
@@ -44,6 +44,10 @@ pub struct System {
     pub(crate) extent: f64,
     /// The contacts and the breakable constraints.
     pub(crate) contacts: Contacts,
+    /// The cliques whose joints rods hold only to second order, as a simulation finds them at its start.
+    pub(crate) second_order: Vec<FlatClique>,
+    /// The rods of these cliques, ascending.
+    second_order_rods: Vec<ConstraintId>,
 }
 
 impl System {
@@ -120,11 +124,12 @@ impl System {
 
     /// The broken links, by their places among [`System::links`].
     pub fn broken_links(&self, state: &State) -> Vec<usize> {
+        // Breakables, like links, are in the order of constraints, so that their rows ascend.
         let breakables = self.contacts.breakables.iter().zip(&state.modes.broken);
         let broken: Vec<usize> =
             breakables.filter(|&(_, &broken)| broken).map(|(breakable, _)| breakable.rows.start).collect();
         let links = self.links().enumerate();
-        links.filter(|(_, link)| broken.contains(&link.rows.start)).map(|(place, _)| place).collect()
+        links.filter(|(_, link)| broken.binary_search(&link.rows.start).is_ok()).map(|(place, _)| place).collect()
     }
 
     /// The parts of A = J W Jᵀ that are coupled with no other part: for each its shape, the method that factors it and
@@ -174,6 +179,41 @@ impl System {
         system.set_constraints(constraints.collect());
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
         system
+    }
+
+    /// The same system with other constraints in place of the rods of some cliques.
+    pub(crate) fn with_cliques(
+        &self,
+        cliques: &[FlatClique],
+        stand_in: &dyn Fn(&FlatClique) -> Vec<Constraint>,
+    ) -> System {
+        let mut is_replaced = vec![false; self.constraints.len()];
+        cliques.iter().flat_map(|clique| &clique.rods).for_each(|rod| is_replaced[rod.0] = true);
+        let kept = self.constraints.iter().zip(is_replaced).filter(|(_, is_replaced)| !is_replaced);
+        let kept = kept.map(|(named, _)| (named.name.clone(), named.constraint.clone()));
+        let others = cliques.iter().flat_map(|clique| stand_in(clique)).map(|constraint| (String::new(), constraint));
+        let mut system = self.clone();
+        system.set_constraints(kept.chain(others).collect());
+        system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
+        system
+    }
+
+    /// Whether a constraint is a rod whose tension has no meaning, because it holds a joint only to second order.
+    pub(crate) fn is_second_order(&self, constraint: usize) -> bool {
+        self.second_order_rods.binary_search(&ConstraintId(constraint)).is_ok()
+    }
+
+    /// Takes the cliques that are held only to second order.
+    pub(crate) fn set_second_order(&mut self, cliques: Vec<FlatClique>) {
+        self.second_order_rods = cliques.iter().flat_map(|clique| clique.rods.iter().copied()).collect();
+        self.second_order_rods.sort_unstable();
+        self.second_order = cliques;
+    }
+
+    /// The names of the joints of the cliques that are held only to second order.
+    pub(crate) fn names_of_cliques(&self) -> Vec<Vec<String>> {
+        let name = |id: &ParticleId| self.particle_names[id.0].clone();
+        self.second_order.iter().map(|clique| clique.particles.iter().map(name).collect()).collect()
     }
 
     /// The mass [kg] of all particles that hang together with one through constraints.

@@ -6,6 +6,7 @@
 //! exist anyway.
 
 use crate::constraint::Holds;
+use crate::error::StepError;
 use crate::force::Acts;
 use crate::linalg::{BlockLdl, ForestEdge, LeafToRoot, NONE};
 use crate::space::ParticleId;
@@ -199,6 +200,32 @@ impl Graph {
         self.forest = LeafToRoot::new(links, system.dimension());
         self.cycles = BlockLdl::new(&in_cycles, &self.edges, system.dimension());
     }
+}
+
+/// The most pairs of particles that constraints and forces may couple. A pair takes about 300 bytes with its block of H
+/// and of the factor, so these are 5 GB; a rod has one pair, a rope over 5000 pulleys 12.5 million.
+const MOST_COUPLINGS: usize = 1 << 24;
+
+/// Refuses a system whose constraints and forces couple too many pairs of particles for a matrix with a block for each,
+/// before anything is allocated.
+///
+/// # Errors
+/// [`StepError::TooManyCouplings`], with the constraint of most particles.
+pub(super) fn check_couplings(system: &System, time: f64) -> Result<(), StepError> {
+    let moving = |ids: &[ParticleId]| ids.iter().filter(|&&id| !system.is_fixed(id)).count();
+    let pairs = |count: usize| count.saturating_mul(count.saturating_sub(1)) / 2;
+    let of_forces = system.forces.iter().map(|force| pairs(moving(&force.particles())));
+    let first_rows = system.constraints.iter().map(|named| named.first_row);
+    let particles =
+        first_rows.map(|row| &system.layout.particle[system.layout.start[row]..system.layout.start[row + 1]]);
+    let counts: Vec<usize> = particles.map(moving).collect();
+    let sum = counts.iter().map(|&count| pairs(count)).chain(of_forces).fold(0, usize::saturating_add);
+    if sum <= MOST_COUPLINGS {
+        return Ok(());
+    }
+    let largest = (0..counts.len()).max_by_key(|&place| counts[place]);
+    let constraint = largest.map(|place| system.constraints[place].name.clone());
+    Err(StepError::TooManyCouplings { time, constraint, pairs: sum, limit: MOST_COUPLINGS })
 }
 
 /// The component of a root, parents before children: (node, parent, edge to it).

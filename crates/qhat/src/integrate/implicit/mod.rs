@@ -26,7 +26,6 @@ pub(crate) use newton::Base;
 
 use super::check_finite;
 use super::frame::Frame;
-
 use crate::drift::{attainable, drift};
 use crate::energy;
 use crate::error::StepError;
@@ -35,6 +34,7 @@ use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Integrator};
 use crate::state::{Carry, Previous, State, SteadyMemory};
 use crate::system::System;
+use graph::check_couplings;
 use newton::{Ending, Newton, Tried};
 use residual::exceeds;
 
@@ -82,7 +82,13 @@ pub(crate) fn frame<const D: usize>(
 ) -> Result<StepReport, StepError> {
     let (system, length) = (frame.system, frame.length);
     reach::check::<D>(system, state, formula.integrator, length)?;
-    let mut scratch = frame.workspace.implicit.take().unwrap_or_else(|| Box::new(Scratch::new(system)));
+    let mut scratch = match frame.workspace.implicit.take() {
+        Some(scratch) => scratch,
+        None => {
+            check_couplings(system, state.t)?;
+            Box::new(Scratch::new(system))
+        }
+    };
     let before = frame.factorizations();
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
