@@ -3,7 +3,7 @@
 use crate::systems::{self, FRAME};
 use qhat::{
     AirDrag, Dimension, Distance, Drag, ExpressionForce, Integrator, Obstacle, Particle, Purpose, Settings, Simulation,
-    StepError, Surface, System, SystemBuilder, Warning,
+    Spring, StepError, Surface, System, SystemBuilder, Warning,
 };
 
 /// Runs so many frames and gives the warnings of energy: the change [J], its share, and the integrator.
@@ -27,7 +27,8 @@ fn a_damped_whip_is_told() {
         let (system, state) = systems::chain(20, 1.0);
         let mut simulation = Simulation::new(system, state, systems::settings(integrator, FRAME)).unwrap();
         let told = told(&mut simulation, 120);
-        let [(energy, relative, by)] = told[..] else { panic!("{integrator}: {told:?}") };
+        // Bdf2 also gives a little back.
+        let Some(&(energy, relative, by)) = told.first() else { panic!("{integrator}: nothing is told") };
         assert!(energy < 0.0 && relative < -0.01 && by == integrator, "{told:?}");
         let entry = &simulation.warnings().entries()[0];
         assert!(entry.frames > 1 && entry.first < entry.last, "{entry:?}");
@@ -63,20 +64,18 @@ fn the_report_of_a_step_tells_its_energy() {
     assert!(told > 0);
 }
 
-/// Euler's method blows a chain up in plain sight: a warning tells it long before an error ends it.
+/// Euler's method blows an oscillation up in plain sight, by h²ω² = 9 % of its energy a step: with a warning, and not
+/// with an error.
 #[test]
-fn a_chain_that_blows_up_is_told() {
-    let (system, state) = systems::chain(6, 1.0);
-    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Euler, 5e-3)).unwrap();
-    let last = (0..1000).take_while(|_| simulation.step().is_ok()).count();
-    let entries = simulation.warnings().entries().iter();
-    let gained = |warning: &Warning| matches!(warning, Warning::EnergyUnaccounted { energy, .. } if *energy > 0.0);
-    let entry = entries.clone().find(|entry| gained(&entry.warning)).unwrap_or_else(|| panic!("{entries:?}"));
-    assert!(
-        last > 20 && entry.first < 5e-3 * (last - 10) as f64,
-        "told at {} s, ended after {last} steps",
-        entry.first
-    );
+fn an_oscillation_that_blows_up_is_told() {
+    let mut builder = System::builder(Dimension::Two);
+    let wall = builder.particle(Particle::at("wall", [0.0, 0.0]).fixed());
+    let bead = builder.particle(Particle::at("bead", [1.5, 0.0]));
+    builder.force(Spring { a: wall, b: bead, stiffness: 100.0, damping: 0.0, rest: 1.0 });
+    let (system, state) = builder.build().unwrap();
+    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Euler, 0.03)).unwrap();
+    let told = told(&mut simulation, 60);
+    assert!(told.iter().any(|&(energy, relative, _)| energy > 0.0 && relative > 0.1), "{told:?}");
 }
 
 fn ball(builder: &mut SystemBuilder, restitution: f64) {
@@ -135,7 +134,7 @@ fn what_is_not_finite_ends_the_run() {
         let components = ["wild.x^3", "0"].map(|text| builder.expression(Purpose::Force, text).unwrap()).to_vec();
         builder.force(ExpressionForce { particle: wild, components });
         let (system, state) = builder.build().unwrap();
-        // x(t) is infinite at t = ∫₁^∞ dx/√(x⁴/2 + 1/2) = 1.85 s.
+        // x(t) is infinite at t = ∫₁^∞ dx/√(x⁴/2 + 1/2) = 1.31 s; methods of low order come late.
         let mut simulation = Simulation::new(system, state, systems::settings(integrator, 0.01)).unwrap();
         let error = (0..1000).find_map(|_| simulation.step().err());
         let error = error.unwrap_or_else(|| panic!("{integrator} went on to t = {} s", simulation.state().time()));
@@ -144,7 +143,7 @@ fn what_is_not_finite_ends_the_run() {
             other => panic!("{integrator}: {other}"),
         };
         assert_eq!(particle, "wild", "{integrator}: {error}");
-        assert!((1.8..3.0).contains(time), "{integrator}: {error}");
+        assert!((1.2..2.0).contains(time), "{integrator}: {error}");
         assert!(simulation.state().positions().iter().all(|x| x.is_finite()), "{integrator}: the last good state");
     }
 }

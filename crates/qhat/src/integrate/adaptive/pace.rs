@@ -7,7 +7,8 @@
 //!
 //! A symplectic method therefore goes at a *steady* pace. A substep is a frame over a power of two, and it stays until
 //!
-//! - it is rejected, or longer than the method allows: then it is halved for good, or
+//! - it is rejected, or longer than the method allows, or its error is above the tolerance: then it is halved for good,
+//!   or
 //! - it was calm for long: `CALM` substeps in a row would have been accepted at twice the length. Then the length is
 //!   doubled. Where that length has proved too long before, it takes twice as many calm substeps each time.
 //!
@@ -85,6 +86,10 @@ impl Steady {
         // A third of what would be accepted, so that the next fluctuation does not reject the longer substep.
         let is_calm = DOUBLED * error <= tolerance && double <= self.longest;
         self.memory.calm = if is_calm { self.memory.calm + 1 } else { 0 };
+        if error > tolerance {
+            self.shorten();
+            return;
+        }
         let is_aligned = self.halvings == 0 || self.done % 2 == 0;
         if is_aligned && double > self.allowed && self.memory.calm >= self.calm_needed(double) {
             self.memory.calm = 0;

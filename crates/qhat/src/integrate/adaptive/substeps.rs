@@ -23,6 +23,10 @@ const SHORTEST: f64 = 1e-12;
 /// Part of the substep by which a substep that does not meet the constraints is tried again.
 const HALF: f64 = 0.5;
 
+/// Extents of the system over which an acceleration that has run away would carry a particle within a frame, far above
+/// those of stiff springs, whose substeps are merely many.
+const AWAY: f64 = 1e12;
+
 /// The place that a frame has come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
@@ -94,7 +98,11 @@ impl<'a> Substeps<'a> {
     pub(crate) fn run(&mut self, method: &mut impl Stepper, state: &mut State) -> Result<End, StepError> {
         let outcome = self.advance(method, state);
         method.end(state);
-        outcome
+        outcome.map_err(|error| match error {
+            // Substeps without end are a symptom of a force without bound.
+            StepError::TooManySubsteps { .. } => self.runaway(state, AWAY).unwrap_or(error),
+            other => other,
+        })
     }
 
     fn advance(&mut self, method: &mut impl Stepper, state: &mut State) -> Result<End, StepError> {
@@ -114,6 +122,8 @@ impl<'a> Substeps<'a> {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
                     if self.reject(&substep, growth) < SHORTEST * self.length {
+                        // The error is about the last good motion, which the method may have kept to itself.
+                        method.end(state);
                         return Err(self.failure(method, state, substep.end, refusal));
                     }
                     method.turn_back(state);
@@ -245,15 +255,24 @@ impl<'a> Substeps<'a> {
                 }
                 _ => {}
             }
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
-            match energy::most_accelerated(system, motion) {
-                Some((particle, acceleration)) => {
-                    let particle = system.particle_names[particle.0].clone();
-                    StepError::RanAway { time, particle, acceleration }
-                }
-                // Sums of finite numbers may overflow; then no particle is to blame more than another.
-                None => StepError::NotFinite { time, particle: system.particle_names.first().cloned().unwrap_or_default() },
+            // Sums of finite numbers may overflow; then no particle is to blame more than another.
+            let first = || system.particle_names.first().cloned().unwrap_or_default();
+            self.runaway(state, 0.0).unwrap_or_else(|| StepError::NotFinite { time, particle: first() })
+        })
+    }
+
+    /// The error that names the particle with the largest acceleration, if that would carry it over more than so many
+    /// extents of the system within a frame.
+    fn runaway(&self, state: &State, extents: f64) -> Option<StepError> {
+        in_dimension!(self.system.dimension, D => {
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+            let (particle, acceleration) = energy::most_accelerated(self.system, motion)?;
+            // A product that is not a number counts as too far.
+            if acceleration * self.length * self.length < extents * self.system.extent {
+                return None;
             }
+            let particle = self.system.particle_names[particle.0].clone();
+            Some(StepError::RanAway { time: state.t, particle, acceleration })
         })
     }
 

@@ -26,7 +26,6 @@ pub(crate) use newton::Base;
 
 use super::check_finite;
 use super::frame::Frame;
-
 use crate::drift::{attainable, drift};
 use crate::energy;
 use crate::error::StepError;
