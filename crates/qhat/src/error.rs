@@ -22,8 +22,8 @@ pub enum StepError {
     },
     /// C of a row is not continuous.
     #[error(
-        "at t = {} s the residual of `{row}` jumps to {residual:.2e}: a function in it is not continuous there (an angle \
-         that passes its branch, a sign, a remainder); write it so that it goes on",
+        "at t = {} s the residual of `{row}` jumps to {residual:.2e}: a function in it is not continuous there (an \
+         angle that passes its branch, a sign, a remainder); write it so that it goes on",
         shown(*time)
     )]
     Jumps {
@@ -36,8 +36,8 @@ pub enum StepError {
     },
     /// No multipliers satisfy the equation of motion to three digits.
     #[error(
-        "at t = {} s the constraint forces cannot be found to three digits: masses, lengths or forces are too many decades \
-         apart",
+        "at t = {} s the constraint forces cannot be found to three digits: masses, lengths or forces are too many \
+         decades apart",
         shown(*time)
     )]
     OutOfBalance {

@@ -119,7 +119,7 @@ pub const NOTATION: [Notation; 23] = [
     row("T unique", "is_unique", "tension_is_unique", "links", "1", "multiplier/share/mod.rs"),
     row("λ unique", "is_unique", "multiplier_is_unique", "m", "1", "multiplier/share/mod.rs"),
     row("λ off", "off", "is_open", "m", "1", "modes.rs"),
-    row("rank A", "rank", "rank", "1", "1", "linalg/rank.rs"),
+    row("rank A", "rank", "rank", "1", "1", "multiplier/factor.rs"),
 ];
 
 /// Evaluates the equation at a state, with the system's own feedback.

@@ -216,19 +216,30 @@ fn redundant_systems_equal_the_pseudo_inverse() {
     }
 }
 
-/// Rows that contradict each other about C̈: the q̈ with the smallest residual, and the least λ for this q̈.
+/// Rows that contradict each other about C̈, as with velocities that no redundant row allows: the rows that were kept
+/// are met exactly, so that the contradiction stays in the row that was left out, and λ stays bounded.
 #[test]
-fn contradicting_rows_come_as_near_as_they_can() {
+fn contradicting_rows_are_met_but_for_those_left_out() {
     let mut random = Random::new(14);
     for (system, state) in [systems::truss(4, true), systems::net(2)] {
         let state = state.with_motion(state.positions().to_vec(), random.numbers(state.velocities().len(), -1.0, 1.0));
         let terms = evaluate(&system, &state);
         let (lambda, rank) = reference(&terms);
         assert_eq!((terms.rank, rank), (Some(system.row_count() - 1), system.row_count() - 1));
-        let qdd = accelerations(&system, &terms, &lambda);
-        // The contradiction is removed from b first; 1e-16 of it remains and is divided by δ = 1e-8 in λ.
-        assert_all_close("q̈", &terms.accelerations, &qdd, 1e-7 * largest(&qdd));
-        assert_all_close("λ", &terms.multipliers, &lambda, 1e-6 * largest(&lambda));
+        let J = terms.jacobian.to_dense();
+        let coordinates = terms.positions.len();
+        let Cdd: Vec<f64> = (0..system.row_count())
+            .map(|row| {
+                let along = (0..coordinates).map(|k| J[row * coordinates + k] * terms.accelerations[k]);
+                along.sum::<f64>() + terms.acceleration_bias[row]
+            })
+            .collect();
+        // Roundoff of accelerations of size 10 to 1000, over twenty terms.
+        let size = largest(&terms.accelerations);
+        let missed = Cdd.iter().filter(|Cdd| Cdd.abs() > 1e-11 * size).count();
+        assert_eq!(missed, 1, "{Cdd:?}");
+        // The one row is missed by what the rows contradict each other, which the least residual shares among all.
+        assert!(largest(&terms.multipliers) < 100.0 * largest(&lambda), "{:?}", terms.multipliers);
     }
 }
 

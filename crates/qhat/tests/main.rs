@@ -33,6 +33,7 @@ mod method_example;
 mod one_step_by_hand;
 mod order;
 mod reactions;
+mod redundant;
 mod refused;
 mod second_order;
 mod serde;

@@ -11,7 +11,7 @@
 //! 3. For each of the others, the part of g_w across the span of the rows kept is computed itself,
 //!
 //! ```text
-//! r_w = g_w − Jᵀ S x,   M_kept x = S J g_w           refined once, so that |r_w| is good to roundoff and not to its root
+//! r_w = g_w − Jᵀ S x,   M_kept x = S J g_w        refined once: |r_w| is good to roundoff and not to its root
 //! ```
 //!
 //!    and they are taken in turn, the largest first, as long as |r_w|, the sine of the angle, is above `SAME`. A row

@@ -4,15 +4,15 @@
 //!
 //! 1. every number of it is finite;
 //! 2. its error estimate is at most `MISSED` tolerances;
-//! 3. every |C| is at most what `drift::attainable` says: half the constraint tolerance, against the scale of the row and
-//!    the extent of the system, which are fixed at the start;
+//! 3. every |C| is at most what `drift::attainable` says: half the constraint tolerance, against the scale of the row
+//!    and the extent of the system, which are fixed at the start;
 //! 4. the projection onto C = 0 and Ċ = 0 moved q and q̇ by at most `MOVED` tolerances, in the norm of the estimate: a
 //!    method that is right to the tolerance leaves no more to correct;
 //! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage.
 //!
 //! A substep that is not kept is tried again with a shorter length. If the shortest is not kept either, the frame ends
-//! with an error that names the culprit of the condition that failed. The projection of a start and impacts may move the
-//! state further; they are no substeps.
+//! with an error that names the culprit of the condition that failed. The projection of a start and impacts may move
+//! the state further; they are no substeps.
 
 use crate::settings::Settings;
 
@@ -20,8 +20,8 @@ use crate::settings::Settings;
 /// little too long costs less than two.
 const MISSED: f64 = 3.0;
 
-/// Way of a projection, in tolerances. The estimate is a mean with a safety of its own, so most projections move by less
-/// than one tolerance; the constraint tolerance, which may have gathered over many substeps, is allowed as well.
+/// Way of a projection, in tolerances. The estimate is a mean with a safety of its own, so most projections move by
+/// less than one tolerance; the constraint tolerance, which may have gathered over many substeps, is allowed as well.
 const MOVED: f64 = 10.0;
 
 /// Relative residual of A λ = b. A load of a billion beads leaves 1e-7 by rounding alone, and rods that hold only to

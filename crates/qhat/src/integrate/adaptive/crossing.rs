@@ -18,7 +18,8 @@ const STRETCH: f64 = 1.05;
 /// Part of a substep below which only its first stage is near: the second is at a twentieth or later.
 const CLOSE: f64 = 0.01;
 
-/// The length of the next substep, `time` before a singular position, where `h` is proposed; `None` where it is not near.
+/// The length of the next substep, `time` before a singular position, where `h` is proposed; `None` where it is not
+/// near.
 pub(super) fn crossing(time: f64, h: f64, remaining: f64, middle: f64) -> Option<f64> {
     if time >= remaining || time >= (1.0 + middle) * h || time < CLOSE * h {
         return None;

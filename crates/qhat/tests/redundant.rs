@@ -1,0 +1,161 @@
+//! Rows that follow from others: forces of long structures at rest, rows that say the same in different forms, and
+//! positions where the rank drops.
+
+use crate::systems;
+use crate::systems::dense::largest;
+use qhat::{
+    Dimension, Distance, DistanceForm, Integrator, Nail, Particle, ParticleId, Settings, Simulation, State, System,
+    evaluate,
+};
+
+fn under(integrator: Integrator, h: f64, tolerance: f64) -> Settings {
+    Settings { integrator, h, tolerance, ..Settings::default() }
+}
+
+/// A cantilever of square bays with both diagonals, its left end fixed: one redundant rod a bay. `mass` is that of every
+/// third joint; the others weigh 1 kg.
+fn cantilever(bays: usize, mass: f64) -> (System, State) {
+    let mut builder = System::builder(Dimension::Two);
+    let joints: Vec<[ParticleId; 2]> = (0..=bays)
+        .map(|i| {
+            [0, 1].map(|z| {
+                let m = if (2 * i + z) % 3 == 0 { mass } else { 1.0 };
+                let joint = Particle::at(format!("{i} {z}"), [i as f64, z as f64]).with_mass(m);
+                builder.particle(if i == 0 { joint.fixed() } else { joint })
+            })
+        })
+        .collect();
+    let diagonal = 2.0_f64.sqrt();
+    for bay in joints.windows(2) {
+        let [[a, b], [c, d]] = [bay[0], bay[1]];
+        for (name, ends, length) in [
+            ("low", (a, c), 1.0),
+            ("high", (b, d), 1.0),
+            ("post", (c, d), 1.0),
+            ("up", (a, d), diagonal),
+            ("down", (b, c), diagonal),
+        ] {
+            builder.constraint(name, Distance::new(ends.0, ends.1, length));
+        }
+    }
+    builder.force(systems::gravity());
+    builder.build().unwrap()
+}
+
+/// At rest, constraint forces equal weights: Q + Q̂ vanishes to a few roundings of the largest tension, at any length
+/// and for masses over six decades.
+#[test]
+fn constraint_forces_of_a_cantilever_equal_its_weights() {
+    for (bays, mass) in [(10, 1.0), (100, 1.0), (400, 1.0), (12, 1e-5), (40, 1e6)] {
+        let (system, state) = cantilever(bays, mass);
+        let terms = evaluate(&system, &state);
+        assert_eq!(terms.rank, Some(4 * bays), "{bays} bays");
+        let free = 4..terms.positions.len();
+        let off = free.map(|k| (terms.applied_forces[k] + terms.constraint_forces[k]).abs()).fold(0.0, f64::max);
+        let most = largest(&terms.multipliers);
+        assert!(off <= 1e-14 * most, "{bays} bays, {mass} kg: off by {off:e} N of {most:e} N");
+    }
+}
+
+/// A rod held as a length and as a square, with the longest frame that one substep takes.
+#[test]
+fn a_rod_in_both_forms_moves_as_one_rod() {
+    let pendulum = |forms: &[DistanceForm]| {
+        let mut builder = System::builder(Dimension::Two);
+        let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
+        let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
+        for &form in forms {
+            builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 1.0) });
+        }
+        builder.force(systems::gravity());
+        builder.build().unwrap()
+    };
+    for integrator in Integrator::ALL.into_iter().filter(|integrator| integrator.projects()) {
+        for (h, frames) in [(0.2, 1), (0.01, 200)] {
+            let run = |forms: &[DistanceForm]| {
+                let (system, state) = pendulum(forms);
+                let mut simulation = Simulation::new(system, state, under(integrator, h, 1e-6)).unwrap();
+                (0..frames)
+                    .for_each(|_| drop(simulation.step().unwrap_or_else(|error| panic!("{integrator}: {error}"))));
+                simulation.state().positions().to_vec()
+            };
+            let (both, one) = (run(&[DistanceForm::Length, DistanceForm::Squared]), run(&[DistanceForm::Length]));
+            let off = both.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // An implicit step ends where forces balance to 1e-8, so two equal formulations differ by as much.
+            assert!(off <= if integrator.is_implicit() { 1e-6 } else { 1e-9 }, "{integrator}, h = {h}: {off:e} m");
+        }
+    }
+}
+
+/// A nail and a rod that repeat each other, at rest under bdf2: roundoff must not gather along the null space.
+#[test]
+fn redundant_rows_at_rest_stay_at_rest() {
+    for integrator in [Integrator::Bdf2, Integrator::Implicit] {
+        let mut builder = System::builder(Dimension::Three);
+        let (from, to) = ([0.88, -1.89, -1.29], [0.3, -0.09, 0.54]);
+        let fixed = builder.particle(Particle::at("fixed", from).fixed());
+        let held = builder.particle(Particle::at("held", to));
+        let length = from.iter().zip(to).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        builder.constraint("rod", Distance::new(held, fixed, length));
+        builder.constraint("nail", Nail::new(held, to));
+        let (system, state) = builder.build().unwrap();
+        let mut simulation = Simulation::new(system, state, under(integrator, 0.001, 1e-6)).unwrap();
+        for step in 0..3000 {
+            let report = simulation.step().unwrap_or_else(|error| panic!("{integrator}, step {step}: {error}"));
+            assert!(report.max_residual <= 1e-10, "{integrator}, step {step}");
+        }
+    }
+}
+
+/// Cranks joined by couplers, every bar 1 m long: all lie in one line at the angles 0 and π. Joints weigh 1 and 2 kg in
+/// turn.
+fn cranks(loops: usize, angle: f64, rate: f64) -> (System, State) {
+    let mut builder = System::builder(Dimension::Two);
+    let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+    let mut last = None;
+    for k in 0..=loops {
+        let pivot = builder.particle(Particle::at(format!("a{k}"), [k as f64, 0.0]).fixed());
+        let joint = Particle::at(format!("b{k}"), [k as f64 + cosine, sine]);
+        let joint = joint.with_velocity([-rate * sine, rate * cosine]).with_mass(1.0 + (k % 2) as f64);
+        let joint = builder.particle(joint);
+        builder.constraint(format!("crank{k}"), Distance::new(pivot, joint, 1.0));
+        if let Some(last) = last.replace(joint) {
+            builder.constraint(format!("coupler{k}"), Distance::new(last, joint, 1.0));
+        }
+    }
+    builder.force(systems::gravity());
+    builder.build().unwrap()
+}
+
+/// Every joint of the cranks moves as a pendulum of 1 m, through the flat position: the same at every tolerance, with
+/// its energy, on one branch.
+#[test]
+fn cranks_pass_through_flat_at_any_tolerance() {
+    let right = {
+        let (system, state) = cranks(0, 1.0, 2.0);
+        let mut simulation = Simulation::new(system, state, under(Integrator::Dop853, 0.05, 1e-12)).unwrap();
+        (0..80).for_each(|_| drop(simulation.step().unwrap()));
+        simulation.state().positions()[2..].to_vec()
+    };
+    for loops in [1, 4] {
+        for tolerance in [1e-3, 1e-5, 1e-7, 1e-9, 1e-10, 1e-11, 1e-12] {
+            let (system, state) = cranks(loops, 1.0, 2.0);
+            let mut simulation = Simulation::new(system, state, under(Integrator::Dop853, 0.05, tolerance)).unwrap();
+            for frame in 0..80 {
+                simulation
+                    .step()
+                    .unwrap_or_else(|error| panic!("{loops} loops, {tolerance:e}, frame {frame}: {error}"));
+            }
+            let what = format!("{loops} loops at a tolerance of {tolerance:e}");
+            let energy = simulation.energy_error_max();
+            // What the issue asks for at 1e-9 and below; above, the frame bounds the substep.
+            let most = if tolerance <= 1e-9 { 1e-9 } else { 1e-7 };
+            assert!(energy <= most, "{what}: energy {energy:e}");
+            for k in 0..=loops {
+                let x = &simulation.state().positions()[4 * k + 2..][..2];
+                let off = (x[0] - k as f64 - right[0]).abs().max((x[1] - right[1]).abs());
+                assert!(off <= if tolerance <= 1e-9 { 1e-7 } else { 1e-5 }, "{what}: joint {k} off by {off:e} m");
+            }
+        }
+    }
+}
