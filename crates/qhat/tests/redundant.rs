@@ -12,8 +12,8 @@ fn under(integrator: Integrator, h: f64, tolerance: f64) -> Settings {
     Settings { integrator, h, tolerance, ..Settings::default() }
 }
 
-/// A cantilever of square bays with both diagonals, its left end fixed: one redundant rod a bay. `mass` is that of every
-/// third joint; the others weigh 1 kg.
+/// A cantilever of square bays with both diagonals, its left end fixed: one redundant rod a bay. `mass` is that of
+/// every third joint; the others weigh 1 kg.
 fn cantilever(bays: usize, mass: f64) -> (System, State) {
     let mut builder = System::builder(Dimension::Two);
     let joints: Vec<[ParticleId; 2]> = (0..=bays)
@@ -26,7 +26,7 @@ fn cantilever(bays: usize, mass: f64) -> (System, State) {
         })
         .collect();
     let diagonal = 2.0_f64.sqrt();
-    for bay in joints.windows(2) {
+    for (i, bay) in joints.windows(2).enumerate() {
         let [[a, b], [c, d]] = [bay[0], bay[1]];
         for (name, ends, length) in [
             ("low", (a, c), 1.0),
@@ -35,7 +35,7 @@ fn cantilever(bays: usize, mass: f64) -> (System, State) {
             ("up", (a, d), diagonal),
             ("down", (b, c), diagonal),
         ] {
-            builder.constraint(name, Distance::new(ends.0, ends.1, length));
+            builder.constraint(format!("{name}{i}"), Distance::new(ends.0, ends.1, length));
         }
     }
     builder.force(systems::gravity());
@@ -64,8 +64,8 @@ fn a_rod_in_both_forms_moves_as_one_rod() {
         let mut builder = System::builder(Dimension::Two);
         let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
         let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
-        for &form in forms {
-            builder.constraint("rod", Distance { form, ..Distance::new(pivot, bob, 1.0) });
+        for (k, &form) in forms.iter().enumerate() {
+            builder.constraint(format!("rod{k}"), Distance { form, ..Distance::new(pivot, bob, 1.0) });
         }
         builder.force(systems::gravity());
         builder.build().unwrap()

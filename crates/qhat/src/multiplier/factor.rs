@@ -14,8 +14,8 @@ use crate::linalg::{Factor, SmallPivots};
 use crate::structure::MatrixStructure;
 
 /// Pivot of M up to which roundoff may have taken it, a few hundred roundings of the unit diagonal, and the pivot in
-/// its place. Refinement shrinks the error by this number over the true pivot each pass, and roundoff is amplified by its
-/// inverse.
+/// its place. Refinement shrinks the error by this number over the true pivot each pass, and roundoff is amplified by
+/// its inverse.
 const TAKEN: [f64; 2] = [1e-13, 1e-8];
 
 /// The same in a matrix with hubs. Before a hub is eliminated, its share is missing in a pivot, which may then be
