@@ -38,6 +38,7 @@ mod refused;
 mod second_order;
 mod serde;
 mod share;
+mod share_random;
 mod size;
 mod snapshot;
 mod softness;

@@ -21,6 +21,7 @@
 //! a generic v is nonzero wherever some vector of the null space is.
 
 use super::displacements::Displacements;
+use super::range::{PASSES, ROUNDOFF, add, dot, least};
 use super::{RightHandSide, RowsToShare};
 use crate::constraint::Layout;
 use crate::space::ParticleId;
@@ -40,23 +41,6 @@ const HELD: f64 = 1e-6;
 /// tolerance of redundant rows that are not multiples of each other, with a digit to spare.
 const CONSISTENT: f64 = 1e-9;
 
-/// Bᵀx = F is met where it is off by a roundoff or two of the largest sum of its terms.
-const MET: f64 = 4e-16;
-
-/// Bᵀx = F is met as well as can be where refinement no longer helps below this.
-const NEARLY_MET: f64 = 1e-13;
-
-/// Refinement gains ten digits a pass where it converges.
-const REFINEMENTS: usize = 4;
-
-/// Curvature along a direction, relative, below which the direction is roundoff: it lies in no space in which conjugate
-/// gradients search, and they must not follow it.
-const ROUNDOFF: f64 = 1e-9;
-
-/// Conjugate gradients end after as many passes as there are eigenvalues far from 1; the limit ends them where roundoff
-/// hides the end.
-const PASSES: usize = 40;
-
 /// One connected component: its rows, and their blocks on particles that can move.
 #[derive(Clone, Debug)]
 pub(super) struct Component {
@@ -68,7 +52,7 @@ pub(super) struct Component {
     entry: Vec<u32>,
     pub(super) particle: Vec<u32>,
     /// The particles, as the system numbers them.
-    owner: Vec<u32>,
+    pub(super) owner: Vec<u32>,
     numbers: Option<Box<Numbers>>,
 }
 
@@ -106,9 +90,9 @@ impl Component {
         Component { rows, start, entry, particle, owner: known, numbers: None }
     }
 
-    /// Whether a row belongs to it.
-    pub(super) fn has(&self, row: usize) -> bool {
-        self.rows.binary_search(&(row as u32)).is_ok()
+    /// Whether any of its rows has a flag; one flag for each row of the system.
+    pub(super) fn any(&self, flags: &[bool]) -> bool {
+        self.rows.iter().any(|&row| flags[row as usize])
     }
 
     /// As [`super::Share::spread`], for the rows of the component.
@@ -287,129 +271,6 @@ impl Component {
         x
     }
 
-    /// Π v.
-    fn without_range<const D: usize>(&self, numbers: &mut Numbers, v: &[f64]) -> Vec<f64> {
-        let mut force = vec![0.0; D * self.owner.len()];
-        self.add_transposed::<D>(&numbers.b, v, &mut force);
-        let mut in_range = vec![0.0; v.len()];
-        self.balance::<D>(numbers, &force, &mut in_range);
-        v.iter().zip(in_range).map(|(v, r)| v - r).collect()
-    }
-
-    /// Adds to x the shortest B u after which Bᵀx = F, and returns u.
-    ///
-    /// The factor is that of K + δ: refinement, x ← x + B (K + δ)⁻¹ (F − Bᵀx), shrinks the error by δ/(σ + δ) in the
-    /// direction of an eigenvalue σ of K. Where a σ is about as small as δ, conjugate gradients go on (`complete`).
-    pub(super) fn balance<const D: usize>(&self, numbers: &mut Numbers, force: &[f64], x: &mut [f64]) -> Vec<f64> {
-        let mut u = vec![0.0; force.len()];
-        let mut r = vec![0.0; force.len()];
-        let mut w = vec![0.0; x.len()];
-        let mut off = self.remainder::<D>(&numbers.b, force, x, &mut r);
-        for _ in 0..REFINEMENTS {
-            if off <= MET {
-                return u;
-            }
-            numbers.displacements.solve(&mut r);
-            self.multiply::<D>(&numbers.b, &r, &mut w);
-            add(1.0, &w, x);
-            add(1.0, &r, &mut u);
-            let last = std::mem::replace(&mut off, self.remainder::<D>(&numbers.b, force, x, &mut r));
-            if off > 0.5 * last {
-                break;
-            }
-        }
-        if off > NEARLY_MET {
-            self.complete::<D>(numbers, &mut r, x, &mut u);
-        }
-        u
-    }
-
-    /// The rest of `balance` for a remainder r, by conjugate gradients for e, the rest of x:
-    ///
-    /// ```text
-    /// G e = B (K + δ)⁻¹ r,   G = B (K + δ)⁻¹ Bᵀ,   r = Bᵀ e
-    /// ```
-    ///
-    /// G has the eigenvalues σ/(σ + δ), nearly all of them 1. Roundoff of r in directions in which nothing holds has no
-    /// part in any product, since B maps it to zero.
-    fn complete<const D: usize>(&self, numbers: &mut Numbers, r: &mut [f64], x: &mut [f64], u: &mut [f64]) {
-        let Numbers { displacements, b, .. } = numbers;
-        // w = B z is what remains of the right side, p = B q the direction.
-        let mut z = r.to_vec();
-        displacements.solve(&mut z);
-        let mut w = vec![0.0; x.len()];
-        self.multiply::<D>(b, &z, &mut w);
-        let (mut p, mut q, mut image) = (w.clone(), z.clone(), w.clone());
-        let mut left = dot(&w, &w);
-        let least = least(left, x);
-        for _ in 0..PASSES {
-            r.fill(0.0);
-            self.add_transposed::<D>(b, &p, r);
-            displacements.solve(r);
-            self.multiply::<D>(b, r, &mut image);
-            let curvature = dot(&p, &image);
-            if left <= least || curvature.is_nan() || curvature <= ROUNDOFF * dot(&p, &p) {
-                break;
-            }
-            let step = left / curvature;
-            add(step, &p, x);
-            add(step, &q, u);
-            add(-step, &image, &mut w);
-            add(-step, r, &mut z);
-            let last = std::mem::replace(&mut left, dot(&w, &w));
-            for (p, w) in p.iter_mut().zip(&w) {
-                *p = left / last * *p + w;
-            }
-            for (q, z) in q.iter_mut().zip(&z) {
-                *q = left / last * *q + z;
-            }
-        }
-    }
-
-    /// r ← F − Bᵀx, and its size in units of the largest sum of absolute values.
-    fn remainder<const D: usize>(&self, b: &[f64], force: &[f64], x: &[f64], r: &mut [f64]) -> f64 {
-        let mut sums: Vec<f64> = force.iter().map(|force| force.abs()).collect();
-        r.copy_from_slice(force);
-        for (i, &x) in x.iter().enumerate() {
-            for block in self.blocks(i) {
-                let first = self.particle[block] as usize * D;
-                for k in 0..D {
-                    let part = b[block * D + k] * x;
-                    r[first + k] -= part;
-                    sums[first + k] += part.abs();
-                }
-            }
-        }
-        let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, number| most.max(number.abs()));
-        let scale = largest(&sums);
-        if scale > 0.0 { largest(r) / scale } else { 0.0 }
-    }
-
-    /// out = B u.
-    pub(super) fn multiply<const D: usize>(&self, b: &[f64], u: &[f64], out: &mut [f64]) {
-        for (i, sum) in out.iter_mut().enumerate() {
-            *sum = 0.0;
-            for block in self.blocks(i) {
-                let first = self.particle[block] as usize * D;
-                for k in 0..D {
-                    *sum += b[block * D + k] * u[first + k];
-                }
-            }
-        }
-    }
-
-    /// out += Bᵀ x.
-    fn add_transposed<const D: usize>(&self, b: &[f64], x: &[f64], out: &mut [f64]) {
-        for (i, &x) in x.iter().enumerate() {
-            for block in self.blocks(i) {
-                let first = self.particle[block] as usize * D;
-                for k in 0..D {
-                    out[first + k] += b[block * D + k] * x;
-                }
-            }
-        }
-    }
-
     pub(super) fn blocks(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
     }
@@ -427,22 +288,6 @@ impl Component {
     pub(super) fn row_count(&self) -> usize {
         self.rows.len()
     }
-}
-
-/// The square at which conjugate gradients end: twelve digits of what they began with, or roundoff of x.
-fn least(first: f64, x: &[f64]) -> f64 {
-    (1e-24 * first).max(64.0 * f64::EPSILON * f64::EPSILON * dot(x, x))
-}
-
-/// x += factor y.
-pub(super) fn add(factor: f64, y: &[f64], x: &mut [f64]) {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x += factor * y;
-    }
-}
-
-pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
 /// The i-th of a sequence of numbers in ±[½, 1] without any pattern, so that no sum of few of them is zero by chance.

@@ -12,13 +12,14 @@
 //! row puts on particles that can move \[N\]. Both are forces, so that neither masses nor units nor the form of a row
 //! play a part. Rows that are not rods do not deform and have no part in the energy of the rods.
 //!
-//! `component.rs` computes the share of one connected component of rows, `displacements.rs` has the factor for it, and
-//! `one_sided.rs` finds the ropes and contacts that carry nothing. A component whose rows are all independent keeps
-//! the λ that it has, to the bit.
+//! `component.rs` computes the share of one connected component of rows, `range.rs` and `displacements.rs` have the
+//! solves and the factor for it, and `one_sided.rs` finds the ropes and contacts that carry nothing. A component
+//! whose rows are all independent keeps the λ that it has, to the bit.
 
 mod component;
 mod displacements;
 mod one_sided;
+mod range;
 
 use super::{RightHandSide, Sliding};
 use crate::constraint::Jacobian;
@@ -75,11 +76,10 @@ impl Share {
             return;
         }
         let components = self.components.get_or_insert_with(|| find(rows.J, rows.inverse_mass, rigid));
-        for component in components {
-            let is_redundant = dependent.is_none_or(|rows| rows.iter().any(|&row| component.has(row)));
-            if is_redundant {
-                component.spread::<D>(rows, lambda, &mut self.is_unique);
-            }
+        let mut is_redundant = vec![dependent.is_none(); lambda.len()];
+        dependent.unwrap_or_default().iter().for_each(|&row| is_redundant[row] = true);
+        for component in components.iter_mut().filter(|component| component.any(&is_redundant)) {
+            component.spread::<D>(rows, lambda, &mut self.is_unique);
         }
     }
 }

@@ -14,7 +14,8 @@
 //!
 //! φ has no minimum where no x with these signs balances F. The signs then stay as they are.
 
-use super::component::{Component, Numbers, dot};
+use super::component::{Component, Numbers};
+use super::range::dot;
 
 /// Newton steps until no more signs are sought. Each step changes the rows that carry; trusses take three to six.
 const STEPS: usize = 50;
