@@ -196,7 +196,7 @@ fn multipliers_equal_the_dense_reference() {
     }
 }
 
-/// Redundant rows: q̈ agrees with the pseudo-inverse to 1e-10, and λ to 1e-8 with the least λ in rows scaled by √A_ii.
+/// Redundant rows: q̈ agrees with the pseudo-inverse to 1e-10, and λ to 1e-8 where it is unique.
 #[test]
 fn redundant_systems_equal_the_pseudo_inverse() {
     let mut random = Random::new(10);

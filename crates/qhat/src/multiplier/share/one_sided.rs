@@ -15,7 +15,7 @@
 //! φ has no minimum where no x with these signs balances F. The signs then stay as they are.
 
 use super::component::{Component, Numbers};
-use super::range::dot;
+use super::range::{dot, largest};
 
 /// Newton steps until no more signs are sought. Each step changes the rows that carry; trusses take three to six.
 const STEPS: usize = 50;
@@ -149,9 +149,4 @@ fn least_along(stretch: &[f64], along: &[f64], is_one_sided: &[bool], work: f64)
     }
     let step = -slope / curvature;
     (step.is_finite() && step > 0.0).then_some(step)
-}
-
-/// max |x_i|.
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |most, x| most.max(x.abs()))
 }

@@ -114,7 +114,6 @@ impl Component {
                 }
             }
         }
-        let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |most, number| most.max(number.abs()));
         let scale = largest(&sums);
         if scale > 0.0 { largest(r) / scale } else { 0.0 }
     }
@@ -159,4 +158,9 @@ pub(super) fn add(factor: f64, y: &[f64], x: &mut [f64]) {
 
 pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// max |x_i|.
+pub(super) fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
