@@ -35,7 +35,7 @@ pub(crate) struct Recorder {
     target: Target,
     frames: usize,
     arrays: [Array; 7],
-    names: [(&'static str, Vec<String>); 3],
+    names: Vec<(&'static str, Vec<String>)>,
 }
 
 impl Recorder {
@@ -54,7 +54,7 @@ impl Recorder {
             array("tension", &[links.len()])?,
             array("tension_is_unique", &[links.len()])?,
         ];
-        let names = [
+        let names = vec![
             ("particle_ids", system.particle_names().to_vec()),
             ("row_names", system.row_names().to_vec()),
             ("link_names", links),
