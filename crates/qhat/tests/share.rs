@@ -67,8 +67,7 @@ fn a_braced_square_shares_its_load_under_any_masses_orders_forms_and_units() {
             assert_close(what, found, expected, 1e-12 * 1000.0);
         }
     };
-    for exponent in [-3, -1, 1, 2, 3, 6] {
-        let heavy = 10.0_f64.powi(exponent);
+    for heavy in [1e-3, 0.1, 10.0, 100.0, 1e3, 1e6] {
         same("c heavy", Square { masses: [heavy, 1.0], ..PLAIN });
         same("d heavy", Square { masses: [1.0, heavy], ..PLAIN });
     }

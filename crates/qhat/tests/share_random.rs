@@ -1,6 +1,6 @@
 //! Random redundant frameworks in the plane and in space, many with mechanisms, against a dense reference.
 
-use crate::systems::dense::{dot, eigen, largest, multiply_transposed};
+use crate::systems::dense::{dot, eigen, largest, multiply_transposed, norm};
 use crate::systems::fuzz;
 use crate::systems::random::{Random, dimension};
 use qhat::{Distance, DistanceForm, Nail, Particle, ParticleId, PointForce, Relation, System, evaluate};
@@ -71,7 +71,7 @@ fn frameworks_share_as_the_definition_says() {
             .enumerate()
             .map(|(i, x)| {
                 let x: [f64; 3] = std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
-                let particle = Particle::at(i.to_string(), &x[..d]).with_mass(10.0_f64.powf(random.within(-2.0, 2.0)));
+                let particle = Particle::at(i.to_string(), &x[..d]).with_mass(libm::exp10(random.within(-2.0, 2.0)));
                 builder.particle(if i < held { particle.fixed() } else { particle })
             })
             .collect();
@@ -81,9 +81,10 @@ fn frameworks_share_as_the_definition_says() {
                 if j < held && i < held || random.within(0.0, 1.0) > 0.75 {
                     continue;
                 }
-                let length = (0..d).map(|k| (points[i][k] - points[j][k]).powi(2)).sum::<f64>().sqrt();
+                let apart: Vec<f64> = (0..d).map(|k| points[i][k] - points[j][k]).collect();
+                let length = norm(&apart);
                 let form = if random.below(2) == 0 { DistanceForm::Length } else { DistanceForm::Squared };
-                let stiffness = 10.0_f64.powf(random.within(-1.0, 1.0));
+                let stiffness = libm::exp10(random.within(-1.0, 1.0));
                 let rod = Distance { form, stiffness, ..Distance::new(ids[i], ids[j], length) };
                 builder.constraint(format!("rod {i} {j}"), rod);
                 flexibility.push(length / stiffness);
