@@ -49,6 +49,8 @@ pub(crate) struct Rank {
     /// The smallest pivot of the scaled A without these rows. Masses make it small, and so does a position near by
     /// where the rank drops.
     pub(crate) least: f64,
+    /// The sine of the least independent row there, which masses do not change; 1 until it is computed.
+    pub(crate) sine: f64,
 }
 
 /// The data that an integrator carries from one frame to the next.

@@ -39,8 +39,9 @@ fn a_load_that_cannot_be_followed_is_carried_at_the_end_of_the_step() {
             assert!(matches!(report.warnings[..], [Warning::TooStiff { .. }]), "{:?}", report.warnings);
         }
     }
-    // While the load falls, the tension is low enough for dop853; it is too high when the load swings through.
-    assert!(by_bdf2 >= 30, "{by_bdf2} frames of 120");
+    // While the load falls, the tension is low enough for dop853; it is too high when the load swings through, in the
+    // last 14 frames.
+    assert!(by_bdf2 >= 10, "{by_bdf2} frames of 120");
     // The pendulum loses little energy: bdf2 damps only motion that is too fast for h.
     assert!(simulation.energy_error().abs() < 0.05, "{:e}", simulation.energy_error());
 }

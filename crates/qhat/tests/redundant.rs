@@ -81,8 +81,8 @@ fn a_rod_in_both_forms_moves_as_one_rod() {
             };
             let (both, one) = (run(&[DistanceForm::Length, DistanceForm::Squared]), run(&[DistanceForm::Length]));
             let off = both.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // An implicit step ends where forces balance to 1e-8, so two equal formulations differ by as much.
-            assert!(off <= if integrator.is_implicit() { 1e-6 } else { 1e-9 }, "{integrator}, h = {h}: {off:e} m");
+            // Both runs are right to the tolerance, over an extent of 1 m, and may choose other substeps.
+            assert!(off <= 1e-6, "{integrator}, h = {h}: {off:e} m");
         }
     }
 }
@@ -102,7 +102,8 @@ fn redundant_rows_at_rest_stay_at_rest() {
         let mut simulation = Simulation::new(system, state, under(integrator, 0.001, 1e-6)).unwrap();
         for step in 0..3000 {
             let report = simulation.step().unwrap_or_else(|error| panic!("{integrator}, step {step}: {error}"));
-            assert!(report.max_residual <= 1e-10, "{integrator}, step {step}");
+            // The constraint tolerance is relative to the length of the rod, 2.6 m.
+            assert!(report.max_residual <= 1e-10 * length, "{integrator}, step {step}");
         }
     }
 }

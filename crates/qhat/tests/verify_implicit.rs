@@ -28,7 +28,11 @@ fn run(simulation: &mut Simulation, frames: usize) -> (StepReport, f64, f64) {
         total.rejected += report.rejected;
         total.max_relative_length_error = total.max_relative_length_error.max(report.max_relative_length_error);
         total.energy = report.energy;
-        report.warnings.into_iter().for_each(|warning| assert_eq!(warning, Warning::Singular));
+        for warning in report.warnings {
+            // Both methods damp what a frame does not resolve, and the account of the simulation says so.
+            let is_expected = matches!(warning, Warning::Singular | Warning::EnergyUnaccounted { .. });
+            assert!(is_expected, "{warning}");
+        }
     }
     let mean = total.factorizations as f64 / frames as f64;
     (total, mean, rise)
@@ -330,6 +334,9 @@ fn a_spent_budget_is_reported_and_holds() {
             // One factorization for the first try, one for the fallback.
             assert!(report.iterations <= 2 && report.substeps == 1, "{integrator}: {report:?}");
             for warning in report.warnings {
+                if matches!(warning, Warning::EnergyUnaccounted { .. }) {
+                    continue;
+                }
                 let Warning::BudgetSpent { iterations, relative, ref row, .. } = warning else { panic!("{warning}") };
                 assert!(iterations <= 2 && relative < 0.5 && row.starts_with("rod"), "{integrator}: {warning}");
                 assert!(warning.to_string().contains("budget"), "{warning}");

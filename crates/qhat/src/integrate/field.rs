@@ -22,6 +22,10 @@ const MAX_ITERATIONS: usize = 8;
 /// Newton iterations that take C from its tolerance to roundoff.
 const SHARPENED: usize = 2;
 
+/// Margin to a singular position below which velocities are not projected: what Ċ is off by there changes q̇ by a
+/// hundred times as much, in a direction that the constraints hardly see.
+const NEAR: f64 = 1e-2;
+
 /// Part of a substep over which the margin is differenced.
 const LOOK_AHEAD: f64 = 0.01;
 
@@ -135,8 +139,9 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             let (row, off) = worst_row(system, &equation.rows.C);
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
-                if !equation.is_nearly_singular() {
-                    if equation.margin().is_some_and(|margin| margin < APPROACH) {
+                let margin = equation.margin::<D>(system).filter(|&margin| margin > NEAR);
+                if let Some(margin) = margin {
+                    if margin < APPROACH {
                         for _ in 0..SHARPENED {
                             equation.solver.solve(matrix, &equation.rows.C, delta);
                             equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
@@ -185,7 +190,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             equation.factor::<D>(self.system, 0.0);
             self.is_factored = true;
         }
-        let here = equation.margin().filter(|&margin| margin < APPROACH)?;
+        let here = equation.margin::<D>(self.system).filter(|&margin| margin < APPROACH)?;
         let ahead = LOOK_AHEAD * h;
         unpack(q, flat_q);
         unpack(qd, flat_qd);
@@ -193,7 +198,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         equation.constrain(self.system, Motion::<D> { q: flat_q, qd: flat_qd, t: t + ahead });
         equation.factor::<D>(self.system, 0.0);
         self.is_factored = false;
-        let next = equation.margin().unwrap_or(0.0);
+        let next = equation.margin::<D>(self.system).unwrap_or(0.0);
         (next < here).then(|| ahead * here / (here - next))
     }
 

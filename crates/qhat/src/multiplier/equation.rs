@@ -35,9 +35,11 @@ const DOUBTFUL: f64 = 1e-4;
 /// placed. Open chains, which hold C to its tolerance, go over to the general path there.
 pub(crate) const APPROACH: f64 = 0.2;
 
-/// Part of the smallest pivot where the rank was found below which a position is near one where the rank drops: the
-/// sine of the least independent row is then a hundredth of what it was.
-pub(crate) const NEAR: f64 = 1e-4;
+/// Growth of the smallest pivot at which the rank is noted anew: a motion may begin near a position where it drops.
+const GROWN: f64 = 4.0;
+
+/// The largest sine of a rank that is noted; 1 stands for one that is not known.
+const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
 impl Equation {
     /// Solves the equation at one motion, everything from Q to q̈. `is_factored`: the factor of A + ε I at this q and
@@ -147,7 +149,7 @@ impl Equation {
         }
         self.rank = rank.or_else(|| {
             let (inactive, dependent) = (self.inactive.clone(), self.solver.dependent().to_vec());
-            Some(Arc::new(Rank { inactive, dependent, least: self.solver.smallest_pivot().min(1.0) }))
+            Some(Arc::new(Rank { inactive, dependent, least: self.solver.smallest_pivot().min(1.0), sine: 1.0 }))
         });
     }
 
@@ -158,33 +160,48 @@ impl Equation {
         self.solver.factor_shifted(&system.matrix, &self.A, &self.inactive);
     }
 
-    /// The rows that follow from others, for the next frame. Its smallest pivot is the largest that any position had: a
-    /// motion may begin near a position where the rank drops.
-    pub(crate) fn rank_to_keep(&self) -> Option<Arc<Rank>> {
-        let (rank, smallest) = (self.rank.as_ref()?, self.solver.smallest_pivot().min(1.0));
-        if smallest <= rank.least || self.solver.dependent() != rank.dependent {
-            return Some(rank.clone());
+    /// The rows that follow from others, for the next frame, with the smallest pivot and sine of any position so far.
+    pub(crate) fn rank_to_keep<const D: usize>(&mut self, system: &System) -> Option<Arc<Rank>> {
+        let rank = self.rank.clone()?;
+        let smallest = self.solver.smallest_pivot().min(1.0);
+        let is_known = rank.sine < 1.0 && smallest <= GROWN * rank.least;
+        if is_known || self.solver.dependent() != rank.dependent {
+            return Some(rank);
         }
-        Some(Arc::new(Rank { least: smallest, ..Rank::clone(rank) }))
+        let sine = self.least_sine::<D>(system).min(BELOW_ONE);
+        Some(Arc::new(Rank { least: smallest.max(rank.least), sine, ..Rank::clone(&rank) }))
     }
 
-    /// The sine of the least independent row over the largest that it had: how far a singular position is. `None` where
-    /// the rank has already dropped.
-    pub(crate) fn margin(&self) -> Option<f64> {
-        let rank = self.rank.as_ref()?;
-        (self.solver.dependent() == rank.dependent).then(|| (self.solver.smallest_pivot() / rank.least).sqrt())
+    /// The sine of the least independent row over that of the position where the rank was noted: how far a singular
+    /// position is. `None` where the rank has dropped. Pivots of A answer where they are large; where they are small,
+    /// masses may be the reason, and the pivots of J Jᵀ answer.
+    pub(crate) fn margin<const D: usize>(&mut self, system: &System) -> Option<f64> {
+        let rank = self.rank.clone()?;
+        if self.solver.dependent() != rank.dependent {
+            return None;
+        }
+        let margin = (self.solver.smallest_pivot() / rank.least).sqrt();
+        if margin >= APPROACH {
+            return Some(margin);
+        }
+        Some(self.least_sine::<D>(system) / rank.sine)
+    }
+
+    /// The least sine between a row that is kept and the rows before it.
+    fn least_sine<const D: usize>(&mut self, system: &System) -> f64 {
+        let matrix = &system.matrix;
+        let free: Vec<f64> = system.inverse_mass.iter().map(|&w| if w > 0.0 { 1.0 } else { 0.0 }).collect();
+        matrix.assemble::<D>(&self.rows.J, &free, &mut self.A);
+        let dependent = self.solver.dependent().to_vec();
+        let smallest = self.solver.factor(matrix, &self.A, 0.0, &self.inactive, &dependent);
+        self.factor::<D>(system, 0.0);
+        // Where the rank drops, roundoff may leave a pivot that is not positive.
+        smallest.max(0.0).sqrt()
     }
 
     /// Whether a row is left out because it follows from others at any position.
     pub(crate) fn follows(&self, row: usize) -> bool {
         self.rank.as_ref().is_some_and(|rank| rank.dependent.binary_search(&(row as u32)).is_ok())
-    }
-
-    /// Whether the rank of A drops near the position of the factor at hand.
-    pub(crate) fn is_nearly_singular(&self) -> bool {
-        self.rank.as_ref().is_some_and(|rank| {
-            self.solver.smallest_pivot() <= NEAR * rank.least || self.solver.dependent() != rank.dependent
-        })
     }
 
     /// λ for the right-hand side at hand, and F of the sliding contacts; λ is not a number where friction has no

@@ -86,7 +86,9 @@ impl Steady {
         // A third of what would be accepted, so that the next fluctuation does not reject the longer substep.
         let is_calm = DOUBLED * error <= tolerance && double <= self.longest;
         self.memory.calm = if is_calm { self.memory.calm + 1 } else { 0 };
-        if error > tolerance {
+        // An error that does not fall with the length, as where an expression loses its value, ends the frame by the
+        // number of its substeps.
+        if error > tolerance && self.halvings < MOST_HALVINGS {
             self.shorten();
             return;
         }

@@ -79,7 +79,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         let Some(work) = advance(&self.pair.tableau, &mut self.field, self.stages, state.t, h) else {
             return if self.stages.overflow() { Outcome::NotMet } else { Outcome::Singular };
         };
-        let error = self.error(h);
+        let (error, imbalance) = (self.error(h), self.field.imbalance());
         if error.is_nan() && self.stages.overflow() {
             return Outcome::NotMet;
         }
@@ -87,7 +87,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         if !accepts(error, self.settings) {
             return Outcome::Met(attempt);
         }
-        if self.field.imbalance() > BALANCE {
+        if imbalance > BALANCE {
             return Outcome::Refused(Refusal::Balance);
         }
         self.stages.remember();

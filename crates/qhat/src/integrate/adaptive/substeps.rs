@@ -286,15 +286,18 @@ impl<'a> Substeps<'a> {
     /// is λ at the state, if the frame ended on the general path.
     pub(crate) fn finish(mut self, frame: &mut Frame<'_>, state: &mut State, lambda: Option<Vec<f64>>) -> StepReport {
         frame.workspace.watch = self.watch;
-        let equation = &frame.workspace.equation;
+        let equation = &mut frame.workspace.equation;
         let (lambda, drives, is_nearly_singular) = match lambda {
             Some(lambda) => {
                 for warning in equation.warnings(self.system) {
                     self.report.warn(warning);
                 }
                 let drives = energy::drive_power(self.system, &equation.rows.Ct, &lambda);
-                state.rank = equation.rank_to_keep();
-                (lambda, drives, equation.margin().is_none_or(|margin| margin < APPROACH))
+                let margin = in_dimension!(self.system.dimension, D => {
+                    state.rank = equation.rank_to_keep::<D>(self.system);
+                    equation.margin::<D>(self.system)
+                });
+                (lambda, drives, margin.is_none_or(|margin| margin < APPROACH))
             }
             None => (Vec::new(), 0.0, false),
         };

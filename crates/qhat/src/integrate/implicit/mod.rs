@@ -29,6 +29,7 @@ use super::frame::Frame;
 use crate::drift::{attainable, drift};
 use crate::energy;
 use crate::error::StepError;
+use crate::multiplier::APPROACH;
 use crate::point::{Motion, largest};
 use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Integrator};
@@ -93,8 +94,10 @@ pub(crate) fn frame<const D: usize>(
     frame.workspace.set_modes(system, state);
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
-        let equation = frame.workspace.solve::<D>(system, state, &Feedback::NONE);
-        let (lambda, is_nearly_singular) = (equation.lambda.clone(), equation.is_nearly_singular());
+        frame.workspace.solve::<D>(system, state, &Feedback::NONE);
+        let equation = &mut frame.workspace.equation;
+        let is_nearly_singular = equation.margin::<D>(system).is_none_or(|margin| margin < APPROACH);
+        let lambda = equation.lambda.clone();
         state.rank.clone_from(&equation.rank);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
         let steady = SteadyMemory::default();

@@ -54,8 +54,12 @@ impl Newton {
     pub(super) fn evaluate<const D: usize>(&mut self, aim: &Aim<'_>, tried: &mut Tried<'_>) -> Miss {
         let Aim { base, within, farthest } = *aim;
         let (system, h_e) = (tried.system, base.h_e);
-        for (v, (x, from)) in tried.qd.iter_mut().zip(tried.q.iter().zip(&base.q)) {
-            *v = (x - from) / h_e;
+        // Fixed particles have no node, and no velocity: the rounding of q* would move them a little in every step.
+        tried.qd.fill(0.0);
+        for id in &self.matrix.graph.particle {
+            for k in id.0 * D..(id.0 + 1) * D {
+                tried.qd[k] = (tried.q[k] - base.q[k]) / h_e;
+            }
         }
         let motion = Motion::<D> { q: tried.q, qd: tried.qd, t: base.end };
         tried.equation.constrain(system, motion);
