@@ -16,6 +16,7 @@ mod contacts_singular;
 mod custom;
 mod degenerate;
 mod docs;
+mod edges;
 mod equivalence;
 mod examples;
 mod expression;

@@ -43,6 +43,16 @@ pub(crate) trait Smooth: Clone {
     /// The |C| that counts as a relative error of one [C]; `extent` is the length scale of the system [m].
     fn scale(&self, extent: f64) -> f64;
 
+    /// As [`Holds::may_jump`].
+    fn may_jump(&self) -> bool {
+        false
+    }
+
+    /// As [`Holds::arms`].
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        Vec::new()
+    }
+
     /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
@@ -217,6 +227,14 @@ impl<S: Smooth> Holds for S {
                 });
             }
         });
+    }
+
+    fn may_jump(&self) -> bool {
+        Smooth::may_jump(self)
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        Smooth::arms(self)
     }
 
     fn formulated(&self, _: Formulation) -> Self {

@@ -120,7 +120,8 @@ impl EventFunctions<'_> {
         for (breakable, &broken) in system.contacts.breakables.iter().zip(&modes.broken) {
             let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, f64::max);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
-            event_functions.push(if broken { f64::INFINITY } else { reserve });
+            let cannot_break = broken || breakable.limit.is_infinite();
+            event_functions.push(if cannot_break { f64::INFINITY } else { reserve });
         }
     }
 }

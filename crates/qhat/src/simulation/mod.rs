@@ -9,7 +9,7 @@ use crate::energy::Energy;
 use crate::error::StepError;
 use crate::integrate::{Workspace, check_finds_events, check_start, project, step, step_for};
 use crate::report::{Projection, StepReport};
-use crate::settings::{Settings, SettingsError};
+use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 use account::EnergyAccount;
@@ -75,14 +75,14 @@ impl Simulation {
     /// Advances by a duration \[s\]: one frame with an adaptive integrator, steps of h with another.
     ///
     /// # Errors
-    /// [`SettingsError::FrameNotMultiple`] if steps of h do not fill the duration; else as [`Simulation::step`].
+    /// [`SettingsError::FrameNotMultiple`](crate::SettingsError::FrameNotMultiple) if steps of h do not fill the duration; else as [`Simulation::step`].
     pub fn advance(&mut self, duration: f64) -> Result<StepReport, StepError> {
         if self.settings.integrator.is_adaptive() {
             let report = step_for(&self.system, &mut self.state, &self.settings, duration, &mut self.workspace);
             self.account.note(&self.energy());
             return report;
         }
-        let steps = steps_in(duration, self.settings.h)?;
+        let steps = self.settings.steps_in(duration)?;
         let mut report = StepReport::default();
         for _ in 0..steps {
             report.absorb(self.step()?);
@@ -135,18 +135,5 @@ impl Simulation {
     /// The largest size of the missing energy after any step so far, relative to the same \[1\].
     pub fn energy_error_max(&self) -> f64 {
         self.account.largest_error()
-    }
-}
-
-/// Number of steps of h in a frame.
-///
-/// # Errors
-/// If they do not fill it, to a billionth of a step (a frame is a quotient of two numbers a user typed).
-fn steps_in(frame: f64, h: f64) -> Result<usize, SettingsError> {
-    let steps = (frame / h).round();
-    if steps >= 1.0 && (frame / h - steps).abs() <= 1e-9 * steps {
-        Ok(steps as usize)
-    } else {
-        Err(SettingsError::FrameNotMultiple { frame, h })
     }
 }

@@ -157,6 +157,8 @@ impl SystemBuilder {
             feedback: self.feedback,
             extent,
             contacts: Contacts::default(),
+            jumpy: Vec::new(),
+            bead_places: Vec::new(),
         };
         system.set_constraints(self.constraints.clone());
         let plan = system.plan_matrix();

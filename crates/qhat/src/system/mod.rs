@@ -11,7 +11,7 @@ pub(crate) use builder::check_force;
 pub use error::{BuildError, ParticleError};
 pub use particle::Particle;
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, Rows, Softness};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, OnCurve, Rows, Softness};
 use crate::force::{Acts, Force};
 use crate::linalg::Component;
 use crate::point::Motion;
@@ -44,6 +44,10 @@ pub struct System {
     pub(crate) extent: f64,
     /// The contacts and the breakable constraints.
     pub(crate) contacts: Contacts,
+    /// The constraints whose gradient may jump, by their places.
+    pub(crate) jumpy: Vec<usize>,
+    /// The beads on curves, by their places among the constraints.
+    pub(crate) bead_places: Vec<usize>,
 }
 
 impl System {
@@ -200,8 +204,27 @@ impl System {
         mass
     }
 
+    /// The beads on curves, each with its first row.
+    pub(crate) fn beads(&self) -> Vec<(usize, &OnCurve)> {
+        let beads = self.bead_places.iter().map(|&place| &self.constraints[place]);
+        let beads = beads.filter_map(|named| match &named.constraint {
+            Constraint::OnCurve(bead) => Some((named.first_row, bead)),
+            _ => None,
+        });
+        beads.collect()
+    }
+
     pub(crate) fn empty_rows(&self) -> Rows {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
+    }
+
+    /// The rows evaluated at a state.
+    pub(crate) fn rows_at<const D: usize>(&self, state: &State) -> Rows {
+        let mut rows = self.empty_rows();
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        rows.feet.place(&self.beads(), motion, &state.feet);
+        self.evaluate_rows(motion, &mut rows);
+        rows
     }
 
     /// C, Ċ, γ, C_t and J of every row at one motion.
@@ -260,6 +283,11 @@ impl System {
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
         self.contacts = Contacts::new(&self.constraints, dimension);
+        let constraints = self.constraints.iter().enumerate();
+        self.jumpy =
+            constraints.clone().filter(|(_, named)| named.constraint.may_jump()).map(|(place, _)| place).collect();
+        let beads = constraints.filter(|(_, named)| matches!(named.constraint, Constraint::OnCurve(_)));
+        self.bead_places = beads.map(|(place, _)| place).collect();
         self.chains = ChainPlan::new(&self.constraints, &self.inverse_mass);
     }
 

@@ -1,10 +1,11 @@
 //! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
 
 use super::{Attempt, Outcome, Stepper, control};
-use crate::drift::{Drift, worst_row};
+use crate::drift::Drift;
 use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
+use crate::integrate::failure::{at_an_edge, not_satisfied, without_length};
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
 use crate::point::Motion;
@@ -205,7 +206,9 @@ impl<'a> Substeps<'a> {
             check_finite::<D>(self.system, state.t, &tried.q, &tried.qd)
         });
         // Sums of finite numbers may overflow, too; then no particle is to blame more than another.
-        let first = || self.system.particle_names.first().cloned().unwrap_or_default();
+        let particles = self.system.particle_names.iter().zip(&self.system.inverse_mass);
+        let moving = particles.clone().find(|&(_, &w)| w > 0.0).or(particles.clone().next());
+        let first = || moving.map(|(name, _)| name.clone()).unwrap_or_default();
         checked.err().unwrap_or_else(|| StepError::NotFinite { time: state.t, particle: first() })
     }
 
@@ -214,15 +217,16 @@ impl<'a> Substeps<'a> {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
         in_dimension!(self.system.dimension, D => {
-            let mut rows = self.system.empty_rows();
-            self.system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
-            let (row, _) = worst_row(self.system, &rows.C);
-            match rows.C.get(row) {
-                Some(&residual) => {
-                    StepError::NotSatisfied { time: state.t, row: self.system.row_names[row].clone(), residual }
-                }
-                None => self.not_finite(method, state),
+            let motion = Motion::<D> { q: &tried.q, qd: &tried.qd, t: end };
+            if let Some(error) = at_an_edge::<D>(self.system, state, motion) {
+                return error;
             }
+            if let Some(error) = without_length::<D>(self.system, state.t, &state.q) {
+                return error;
+            }
+            let mut rows = self.system.rows_at::<D>(state);
+            self.system.evaluate_rows(motion, &mut rows);
+            if rows.C.is_empty() { self.not_finite(method, state) } else { not_satisfied(self.system, state.t, &rows) }
         })
     }
 

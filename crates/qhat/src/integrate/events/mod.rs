@@ -126,6 +126,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         self.run.field.is_factored = false;
         self.events.append(&mut resolved.events);
         // The start of the next substep. The resolution evaluated all rows; `constrain` masks the inactive ones.
+        self.run.field.follow(t, &mut state.feet);
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
         self.at_start.Cd.clone_from(&equation.rows.Cd);
         self.at_start.lambda.clone_from(&equation.lambda);

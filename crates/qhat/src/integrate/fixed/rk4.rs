@@ -22,7 +22,7 @@ pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> Step
         workspace.equation.solver.memory.ask_again();
     }
     let mut stages = std::mem::take(&mut workspace.stages);
-    let mut field = GeneralField::<D> { system, workspace, feedback: system.feedback, is_factored };
+    let mut field = GeneralField::<D>::new(system, workspace, system.feedback, is_factored);
     stages.resize(field.blocks());
     field.begin(state, &mut stages.q, &mut stages.qd);
     // The general field always has an answer.

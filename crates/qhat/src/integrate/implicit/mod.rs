@@ -24,6 +24,7 @@ mod velocities;
 pub(crate) use newton::Base;
 
 use super::check_finite;
+use super::failure::{at_an_edge, not_satisfied, without_length};
 use super::frame::Frame;
 use crate::drift::drift;
 use crate::energy;
@@ -85,6 +86,7 @@ pub(crate) fn frame<const D: usize>(
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
         state.carry = Some(Carry { lambda, substep: length, deficient, previous: None, drives, resting: 0 });
     }
+    frame.workspace.set_modes(system, state);
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
     let outcome = ImplicitStepper::<D> { formula, frame, scratch: &mut scratch }.run(state);
@@ -112,14 +114,18 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             let left = budget - report.iterations.min(budget);
             let ending = self.attempt(state, h, left);
             report.iterations += ending.iterations;
-            if !ending.has_converged && report.iterations < budget {
+            let edge = self.edge(state).filter(|_| ending.has_converged);
+            if (!ending.has_converged || edge.is_some()) && report.iterations < budget {
                 report.rejected += 1;
                 parts /= 2;
                 if parts == 0 {
                     state.carry = None;
-                    return Err(self.failure(state, &ending));
+                    return Err(edge.unwrap_or_else(|| self.failure(state)));
                 }
                 continue;
+            }
+            if let Some(error) = edge {
+                return Err(error);
             }
             if !ending.has_converged {
                 report.warn(Warning::BudgetSpent {
@@ -197,6 +203,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         state.work.dissipation += h * mean(before, after);
         std::mem::swap(&mut state.q, &mut workspace.q);
         std::mem::swap(&mut state.qd, &mut workspace.qd);
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: base.end };
+        workspace.equation.follow_feet(system, motion, &mut state.feet);
         if let Some(carry) = &mut state.carry {
             let scale = base.h_e * base.h_e;
             for (multiplier, mu) in carry.lambda.iter_mut().zip(&newton.mu) {
@@ -215,16 +223,27 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// The error after the shortest step did not converge: the worst row, or without rows a particle.
-    fn failure(&self, state: &State, ending: &Ending) -> StepError {
-        let (system, row) = (self.frame.system, ending.miss.row);
-        match self.frame.workspace.equation.rows.C.get(row) {
-            Some(&residual) => StepError::NotSatisfied { time: state.t, row: system.row_names[row].clone(), residual },
-            None => StepError::NotFinite {
-                time: state.t,
-                particle: system.particle_names.first().cloned().unwrap_or_default(),
-            },
+    /// The error after the shortest step did not converge: the culprit, or without rows a particle.
+    fn failure(&self, state: &State) -> StepError {
+        let (system, workspace) = (self.frame.system, &*self.frame.workspace);
+        let tried = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: self.scratch.base.end };
+        if let Some(error) = at_an_edge(system, state, tried).or_else(|| without_length::<D>(system, state.t, &state.q))
+        {
+            return error;
         }
+        if !workspace.equation.rows.C.is_empty() {
+            return not_satisfied(system, state.t, &workspace.equation.rows);
+        }
+        let particles = system.particle_names.iter().zip(&system.inverse_mass);
+        let moving = particles.filter(|&(_, &w)| w > 0.0).map(|(name, _)| name.clone()).next();
+        StepError::NotFinite { time: state.t, particle: moving.unwrap_or_default() }
+    }
+
+    /// Whether the step in the workspace passes an edge.
+    fn edge(&self, state: &State) -> Option<StepError> {
+        let workspace = &*self.frame.workspace;
+        let tried = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: self.scratch.base.end };
+        at_an_edge(self.frame.system, state, tried)
     }
 }
 
