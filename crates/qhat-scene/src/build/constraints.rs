@@ -21,8 +21,10 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_constraints(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
             let place = self.tree.key("constraints").item(index);
+            self.adding = place.span.clone();
             self.add_constraint(constraint, place);
         }
+        self.adding = 0..0;
     }
 
     /// Adds a constraint under the name that the scene gives it, or under its default name.
@@ -34,7 +36,10 @@ impl Assembly<'_, '_, '_> {
     /// The name that the scene gives a constraint, or else its default name.
     pub(super) fn name_of(&mut self, it: &impl Named) -> String {
         match it.id() {
-            Some(Name(name)) => name.clone(),
+            Some(Name(name)) => {
+                self.note_place(name);
+                name.clone()
+            }
             None => self.free_name(it.default_name()),
         }
     }
@@ -47,7 +52,15 @@ impl Assembly<'_, '_, '_> {
             name = format!("{wanted}({number})");
             number += 1;
         }
+        self.note_place(&name);
         name
+    }
+
+    /// Keeps the place of a constraint for errors that only the engine finds.
+    fn note_place(&mut self, name: &str) {
+        if !self.adding.is_empty() {
+            self.places.insert(name.to_owned(), self.adding.clone());
+        }
     }
 
     /// Takes the names that the scene gives, before any default name is made.

@@ -26,6 +26,10 @@ pub(crate) struct Rope {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a jerk or a blow at which the rope breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
 }
 
 named!(Rope, it => format!("rope({}-{})", it.between[0].0, it.between[1].0));
@@ -55,6 +59,10 @@ pub(crate) struct Limits {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a jerk or a blow at which the constraint breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
 }
 
 named!(Limits, it => format!("limits({}-{})", it.between[0].0, it.between[1].0));

@@ -33,6 +33,10 @@ pub(crate) struct Distance {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a blow at which the rod breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
 }
 
 named!(Distance, it => format!("{}-{}", it.between[0].0, it.between[1].0));
