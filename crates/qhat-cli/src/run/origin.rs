@@ -78,8 +78,13 @@ impl Origin {
         self.warnings.clone_from(&tally.warnings);
         (self.status, self.error) = match stopped {
             None => (Status::Done, None),
-            Some(Stop::Interrupt) => {
-                (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", tally.time_reached)))
+            Some(Stop::Interrupt) => (
+                Status::Interrupted,
+                Some(format!("stopped at t = {} s by Ctrl-C, SIGTERM or SIGHUP", tally.time_reached)),
+            ),
+            Some(Stop::Unwritten(failure)) => {
+                let message = format!("{}; of the frames before, those that were written are kept", failure.message());
+                (Status::Interrupted, Some(message))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
             Some(Stop::Error(error)) => (Status::of(error), Some(error.to_string())),
