@@ -3,7 +3,7 @@
 use crate::systems::dense::assert_close;
 use qhat::{
     Dimension, Distance, DistanceForm, ExpressionConstraint, Gravity, Limits, Nail, Obstacle, Particle, ParticleId,
-    PointForce, Purpose, Settings, Simulation, State, Surface, System, SystemBuilder, evaluate,
+    PointForce, Purpose, Settings, Simulation, Surface, System, SystemBuilder, evaluate,
 };
 
 /// The square of 1 m, hung by its corners a and b, with both diagonals: 1000 N pull down at d.
@@ -279,7 +279,7 @@ fn tensions_of_long_trusses_balance_the_loads() {
 mod random {
     //! Random redundant frameworks in the plane and in space, many with mechanisms, against a dense reference.
 
-    use super::{Dimension, Distance, DistanceForm, Nail, Particle, ParticleId, System};
+    use super::{Distance, DistanceForm, Nail, Particle, ParticleId, System};
     use crate::systems::dense::{dot, eigen, largest, multiply_transposed};
     use crate::systems::fuzz;
     use crate::systems::random::{Random, dimension};

@@ -4,8 +4,8 @@ use super::bisection::{Graph, bisect};
 use super::dissection::nested_dissection;
 use super::elimination::Elimination;
 use super::{
-    ComponentKind, DenseLdl, EliminationPlan, Factor, Incidence, Pattern, SmallPivots, SparseLdl, Symbolic,
-    SymmetricMatrix, ordering,
+    ComponentKind, DenseLdl, EliminationPlan, Factor, Incidence, OuterProducts, Pattern, SmallPivots, SparseLdl,
+    Symbolic, SymmetricMatrix, ordering,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -289,7 +289,8 @@ fn components_are_told_apart() {
 fn matrices_read_back_what_was_put_in() {
     let pattern = Pattern::from_rows(vec![vec![], vec![0, 0, 5], vec![1]]);
     assert_eq!((pattern.order(), pattern.len()), (3, 5), "no entry twice, and none above the diagonal");
-    let matrix = SymmetricMatrix { pattern, values: vec![1.0, 2.0, 3.0, 4.0, 5.0] };
+    let (values, outer) = (vec![1.0, 2.0, 3.0, 4.0, 5.0], OuterProducts::default());
+    let matrix = SymmetricMatrix { pattern, values, outer };
     assert_eq!(matrix.to_dense(), [1.0, 2.0, 0.0, 2.0, 3.0, 4.0, 0.0, 4.0, 5.0]);
     assert_eq!((matrix.get(0, 2), matrix.get(1, 2), matrix.get(2, 1)), (0.0, 4.0, 4.0));
     let mut out = [0.0; 3];
