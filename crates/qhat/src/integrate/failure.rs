@@ -17,7 +17,7 @@ use super::edges::Passage;
 use crate::constraint::{Holds, Rows};
 use crate::drift::worst_row;
 use crate::error::StepError;
-use crate::point::{Motion, block, minus, norm};
+use crate::point::{Motion, block, larger, minus, norm};
 use crate::settings::Feedback;
 use crate::space::ParticleId;
 use crate::state::State;
@@ -102,7 +102,8 @@ pub(super) fn unmet_rate(system: &System, time: f64, rows: &Rows, allowed: f64) 
 /// dead centre. `None` where it is not so.
 ///
 /// ```text
-/// r = J q̈ + γ(0) ≠ 0        what the accelerations miss, at rest; Jᵀ r = 0
+/// e = J q̈ + γ(0) ≠ 0        what the accelerations miss, at rest, in rows that follow from others
+/// r = e − A⁻¹ A e            A⁻¹ over the other rows: Jᵀ r = 0, r·γ(0) = |e|²
 /// r·γ(v) = r·γ(0) + vᵀ (Σ r_i ∂²C_i) v        for a free velocity v, J v = 0: zero for v of some size, if the signs differ
 /// ```
 pub(super) fn undecided<const D: usize>(
@@ -127,9 +128,10 @@ pub(super) fn undecided<const D: usize>(
     let gamma = equation.rows.gamma.clone();
     let is_active = |row: usize| !equation.is_inactive(row) && system.softness[row].is_rigid();
     let missed: Vec<f64> = (0..m).map(|row| if is_active(row) { met[row] + gamma[row] } else { 0.0 }).collect();
-    let largest = (0..m).map(|row| gamma[row].abs().max(forces[row].abs())).fold(0.0, f64::max);
+    let largest = (0..m).map(|row| larger(gamma[row].abs(), forces[row].abs())).fold(0.0, larger);
     let row = (0..m).find(|&row| missed[row].abs() > CONTRADICTION * largest)?;
-    let along = |gamma: &[f64]| missed.iter().zip(gamma).map(|(r, g)| r * g).sum::<f64>();
+    let contradiction = without_force::<D>(system, workspace, missed);
+    let along = |gamma: &[f64]| contradiction.iter().zip(gamma).map(|(r, g)| r * g).sum::<f64>();
     let at_rest = along(&gamma);
     let bends_back = |seed: usize| {
         let v = free_velocity::<D>(system, workspace, seed);
@@ -142,6 +144,18 @@ pub(super) fn undecided<const D: usize>(
         return None;
     }
     Some(StepError::Undecided { time: state.t, drive: drive_near(system, &soon, row)? })
+}
+
+/// r with Jᵀ r = 0 from what only rows that follow from others miss: r = e − A⁻¹ A e, A⁻¹ over the other rows.
+fn without_force<const D: usize>(system: &System, workspace: &mut Workspace, mut missed: Vec<f64>) -> Vec<f64> {
+    let (equation, W) = (&mut workspace.equation, &system.inverse_mass);
+    let (mut moved, mut rates) = (vec![0.0; system.coordinate_count()], vec![0.0; system.row_count()]);
+    let mut held = vec![0.0; system.row_count()];
+    equation.rows.J.add_impulse::<D>(W, &missed, 1.0, &mut moved);
+    equation.rows.J.multiply::<D>(&moved, &mut rates);
+    equation.solver.solve(&system.matrix, &rates, &mut held);
+    missed.iter_mut().zip(&held).for_each(|(e, held)| *e -= held);
+    missed
 }
 
 /// Free velocities that are tried: one would do for one free direction.
