@@ -176,7 +176,11 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         let (equation, motion) = (&mut workspace.equation, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t });
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
         if is_closed || modes.broken.iter().any(|broken| !broken) {
-            equation.solve(system, motion, &Feedback::NONE, true, SolveFor::Force);
+            // Links that share a load are judged by the λ of least norm: any other one that gives the force is off by
+            // what roundoff leaves along the null space, 1e-5 of the load.
+            let may_break = modes.broken.iter().any(|broken| !broken);
+            let wanted = if may_break { SolveFor::LeastNorm } else { SolveFor::Force };
+            equation.solve(system, motion, &Feedback::NONE, true, wanted);
         }
         let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
         EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);
