@@ -55,7 +55,7 @@ fn a_helix_goes_on_beyond_its_range() {
     let builder = bead(&["0.5*cos(s)", "-0.1*s", "0.5*sin(s)"], [0.0, 18.0], &[0.5, 0.0, 0.0], &[0.0; 3]);
     let mut builder = builder;
     builder.force(gravity());
-    let mut simulation = begin(&builder, accurate(Integrator::Auto)).unwrap();
+    let mut simulation = begin(&builder, Settings { tolerance: 1e-10, ..accurate(Integrator::Auto) }).unwrap();
     for _ in 0..3000 {
         simulation.step().unwrap();
     }
