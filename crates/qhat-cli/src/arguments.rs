@@ -10,7 +10,7 @@ const EXIT_CODES: &str = "Exit codes:
   0  done
   1  the motion diverged, or the constraints cannot all hold; the frames reached are written, the output is marked
   2  bad input; nothing is written
-  130  interrupted with Ctrl-C; the frames reached are written, the output is marked";
+  130  interrupted, with Ctrl-C, SIGTERM or SIGHUP; the frames reached are written, the output is marked";
 
 /// Exact dynamics of particles and constraints, with the tension in every rod and rope.
 #[derive(Debug, Parser)]
@@ -76,6 +76,10 @@ pub(crate) struct Run {
     /// The relative error of a substep that adaptive integrators aim at, in place of the scene's
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+
+    /// The most substeps that an adaptive integrator may take in a frame, in place of the scene's
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) max_substeps: Option<usize>,
 
     /// Leave out the largest tension, which costs one more solve for each substep
     #[arg(long)]

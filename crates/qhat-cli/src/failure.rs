@@ -36,6 +36,11 @@ impl Failure {
         Failure::input(format!("{what}: {error}"))
     }
 
+    /// The message, without the word `error`.
+    pub(crate) fn message(&self) -> &str {
+        self.message.strip_prefix("error: ").unwrap_or(&self.message)
+    }
+
     /// Prints the message on stderr and returns the exit code.
     pub(crate) fn report(self) -> ExitCode {
         warn(self.message.trim_end());

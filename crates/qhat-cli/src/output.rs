@@ -4,7 +4,15 @@ use crate::failure::Failure;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::NamedTempFile;
+
+/// The beginning and the end of the names of temporary files.
+const PREFIX: &str = ".qhat-";
+const SUFFIX: &str = ".part";
+
+/// Age below which a temporary file is left alone: its process may not have locked it yet.
+const YOUNG: Duration = Duration::from_secs(60);
 
 /// The file asked for, and whether it may be replaced.
 #[derive(Debug)]
@@ -45,15 +53,41 @@ impl Output {
 
     /// A temporary file beside the output, for [`Output::put`]; removed if it is not renamed.
     pub(crate) fn temporary(&self) -> Result<NamedTempFile, Failure> {
+        self.temporary_file().map_err(|error| self.cannot_write(&error))
+    }
+
+    /// The same, with the error of the system.
+    pub(crate) fn temporary_file(&self) -> io::Result<NamedTempFile> {
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".qhat-").suffix(".part");
+        builder.prefix(PREFIX).suffix(SUFFIX);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
             // The rights of any new file, less the umask; a temporary file has rights for its user only.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        builder.tempfile_in(self.folder()).map_err(|error| self.cannot_write(&error))
+        let file = builder.tempfile_in(self.folder())?;
+        // The lock says to other processes that this file is in use; a file system without locks has none.
+        let _ = file.as_file().lock_shared();
+        self.remove_abandoned();
+        Ok(file)
+    }
+
+    /// Removes the temporary files of processes that were killed: nobody holds a lock on them.
+    fn remove_abandoned(&self) {
+        let Ok(entries) = std::fs::read_dir(self.folder()) else { return };
+        for entry in entries.flatten() {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let is_old = || entry.metadata().ok()?.modified().ok()?.elapsed().ok().map(|age| age > YOUNG);
+            if !(name.starts_with(PREFIX) && name.ends_with(SUFFIX) && is_old().unwrap_or(false)) {
+                continue;
+            }
+            // Without a lock to be had, the file may belong to anyone, and stays.
+            if File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+                let _ = std::fs::remove_file(entry.path());
+            }
+        }
     }
 
     /// Renames a finished file to the output.
@@ -63,12 +97,25 @@ impl Output {
 
     /// Renames a finished file to a companion of the output.
     pub(crate) fn put_as(&self, file: NamedTempFile, path: &Path) -> Result<(), Failure> {
+        // A name must not reach the disk before the bytes do: after a power cut the file would be empty.
+        file.as_file().sync_all().map_err(|error| self.cannot_write(&error))?;
         let outcome = if self.force { file.persist(path) } else { file.persist_noclobber(path) };
         match outcome {
-            Ok(_) => Ok(()),
+            Ok(_) => {
+                self.sync_folder();
+                Ok(())
+            }
             // Another program made the file in the meantime.
             Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => Err(exists(path)),
             Err(failed) => Err(self.cannot_write(&failed.error)),
+        }
+    }
+
+    /// Brings the new name to the disk. A file system that cannot do so keeps the file all the same.
+    fn sync_folder(&self) {
+        #[cfg(unix)]
+        if let Ok(folder) = File::open(self.folder()) {
+            let _ = folder.sync_all();
         }
     }
 

@@ -1,7 +1,7 @@
 //! The source of a scene: a file, a scene that comes with qhat, or stdin.
 
 use crate::failure::Failure;
-use qhat_scene::{Format, Scene, SceneErrors, Shipped, shipped};
+use qhat_scene::{Format, Scene, SceneErrors, Shipped, from_utf16, shipped};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, Read};
@@ -27,7 +27,10 @@ impl Source {
         if argument == "-" {
             let bytes = bytes(io::stdin().lock(), "stdin")?;
             // A JSON scene is an object; no TOML begins with a brace.
-            let json = bytes.trim_ascii_start().starts_with(b"{");
+            let json = match from_utf16(&bytes) {
+                Some(text) => text.trim_start().starts_with('{'),
+                None => bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes).trim_ascii_start().starts_with(b"{"),
+            };
             let format = if json { Format::Json } else { Format::Toml };
             return Ok(Source { name: "stdin".into(), bytes, format, path: None });
         }

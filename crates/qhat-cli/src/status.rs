@@ -24,7 +24,13 @@ impl Status {
     /// The end of a run whose step or start failed with this error.
     pub(crate) fn of(error: &StepError) -> Self {
         match error {
-            StepError::NotSatisfied { .. } | StepError::Penetrates { .. } => Status::Infeasible,
+            StepError::NotSatisfied { .. }
+            | StepError::Penetrates { .. }
+            | StepError::DriveBlocked { .. }
+            | StepError::RateNotSatisfied { .. }
+            | StepError::Undecided { .. }
+            | StepError::CurveEnds { .. }
+            | StepError::NoGradient { .. } => Status::Infeasible,
             _ => Status::Diverged,
         }
     }

@@ -6,6 +6,7 @@ mod check;
 mod common;
 mod events;
 mod play;
+mod reached;
 mod refuse;
 mod render;
 mod run;

@@ -55,7 +55,7 @@ mod suggest;
 mod tree;
 
 pub use error::{SceneError, SceneErrors};
-pub use load::{Format, load, load_bytes};
+pub use load::{Format, from_utf16, load, load_bytes};
 pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub use report::fitted;
 pub use scene::Scene;

@@ -43,11 +43,15 @@ pub fn load(text: &str, source_name: &str, format: Format) -> Result<Scene, Scen
     }
 }
 
-/// Reads a scene from the bytes of a file.
+/// Reads a scene from the bytes of a file, in UTF-8, or in UTF-16 with its byte order mark, as Windows PowerShell 5
+/// writes it.
 ///
 /// # Errors
-/// The errors of [`load`], and bytes that are not UTF-8.
+/// The errors of [`load`], and bytes that are neither.
 pub fn load_bytes(bytes: &[u8], source_name: &str, format: Format) -> Result<Scene, SceneErrors> {
+    if let Some(text) = from_utf16(bytes) {
+        return load(&text, source_name, format);
+    }
     match std::str::from_utf8(bytes) {
         Ok(text) => load(text, source_name, format),
         Err(error) => {
@@ -61,6 +65,19 @@ pub fn load_bytes(bytes: &[u8], source_name: &str, format: Format) -> Result<Sce
     }
 }
 
+/// The text of a file in UTF-16 that begins with its byte order mark; `None` for any other file. A code unit without
+/// its pair becomes U+FFFD.
+pub fn from_utf16(bytes: &[u8]) -> Option<String> {
+    let (mark, rest) = bytes.split_first_chunk::<2>()?;
+    let unit: fn([u8; 2]) -> u16 = match mark {
+        [0xFF, 0xFE] => u16::from_le_bytes,
+        [0xFE, 0xFF] => u16::from_be_bytes,
+        _ => return None,
+    };
+    let units = rest.chunks(2).map(|pair| unit([pair[0], pair.get(1).copied().unwrap_or(0)]));
+    Some(char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
+}
+
 fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene>> {
     if text.len() > MOST_BYTES {
         let message = format!("the scene has {} bytes; at most {MOST_BYTES} are read", text.len());
@@ -72,6 +89,13 @@ fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene
     let content = unmarked.as_deref().unwrap_or(text);
     if content.trim().is_empty() {
         report.error(0..0, "the scene is empty", Some("begin with `schema`, `name` and `dimension`".into()));
+        return None;
+    }
+    // Neither TOML nor JSON begins with a `<`.
+    if content.trim_start().starts_with('<') {
+        let start = content.len() - content.trim_start().len();
+        let help = "a scene is TOML or JSON: write its particles, constraints and loads anew".to_owned();
+        report.error(start..start + 1, "this is XML (MJCF, URDF?), and no scene", Some(help));
         return None;
     }
     let tree = match format {

@@ -4,6 +4,7 @@
 
 mod broken;
 mod classic;
+mod encodings;
 mod expectations;
 mod hostile;
 mod keys;

@@ -116,6 +116,8 @@ pub(crate) fn projection(projection: &qhat::Projection) -> Projection {
     Record::new()
         .with("moved", projection.moved)
         .with("velocity_changed", projection.velocity_changed)
+        .with("is_moved", projection.is_moved)
+        .with("is_turned", projection.is_turned)
         .with("residual_before", projection.residual_before)
         .with("iterations", projection.iterations as f64)
         .finish()

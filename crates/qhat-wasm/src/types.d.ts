@@ -202,6 +202,10 @@ export interface Projection {
   moved: number;
   /** m/s */
   velocity_changed: number;
+  /** whether `moved` is more than the tolerance explains */
+  is_moved: boolean;
+  /** whether `velocity_changed` is more than the tolerance explains */
+  is_turned: boolean;
   residual_before: number;
   iterations: number;
 }

@@ -43,6 +43,11 @@ impl Driven {
         Expression::parse(text, &scope).map(Driven::Function)
     }
 
+    /// Whether it is a function of t.
+    pub(crate) fn is_driven(&self) -> bool {
+        matches!(self, Driven::Function(_))
+    }
+
     /// Its value at t \[s\].
     pub fn value(&self, t: f64) -> f64 {
         self.at(t).0

@@ -165,6 +165,69 @@ pub enum StepError {
         /// Its |C| \[C\].
         residual: f64,
     },
+    /// A drive asks for what the other constraints do not allow.
+    #[error(
+        "at t = {} s the drive `{drive}` asks for more than the other constraints allow: `{row}` is off by {}, \
+         and no positions near by satisfy both",
+        shown(*time), Digits(residual.abs())
+    )]
+    DriveBlocked {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The drive.
+        drive: String,
+        /// The worst row of the best try.
+        row: String,
+        /// Its C \[C\].
+        residual: f64,
+    },
+    /// No velocities satisfy the constraints at the start.
+    #[error("at t = {} s {}", shown(*time), rate_left(row, *rate, drive.as_deref()))]
+    RateNotSatisfied {
+        /// t \[s\].
+        time: f64,
+        /// The worst row.
+        row: String,
+        /// Its Ċ \[C/s\].
+        rate: f64,
+        /// The drive that asks for it, if one does.
+        drive: Option<String>,
+    },
+    /// A dead centre: the constraints do not say on which of two branches the motion goes on.
+    #[error(
+        "at t = {} s the constraints do not decide which way to go: this is a dead centre for `{drive}`, from which \
+         more than one motion follows it. Start a little beside it, or with a velocity that decides",
+        shown(*time)
+    )]
+    Undecided {
+        /// t \[s\].
+        time: f64,
+        /// The drive.
+        drive: String,
+    },
+    /// A bead has come to the end of its curve.
+    #[error("at t = {} s {}", shown(*time), at_the_end(particle, constraint, *end))]
+    CurveEnds {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The bead.
+        particle: String,
+        /// The constraint that holds it on the curve.
+        constraint: String,
+        /// The end.
+        end: CurveEnd,
+    },
+    /// The gradient of a constraint is not defined where the motion leads: a stretch of a rope, a rod of driven length
+    /// or an arm of an angle has shrunk to nothing, or an expression has a kink there.
+    #[error("at t = {} s {}", shown(*time), without_gradient(constraint, ends))]
+    NoGradient {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The constraint.
+        constraint: String,
+        /// The ends of the stretch without length; empty where it is none.
+        ends: Vec<String>,
+    },
     /// The frame would need more substeps than allowed.
     #[error(
         "at t = {} s the frame needs more than {max_substeps} substeps: raise max_substeps or the tolerance, or use \
@@ -196,6 +259,63 @@ pub enum StepError {
     /// A setting was refused.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+}
+
+impl StepError {
+    /// Whether constraints were not met, which another method might still do.
+    pub(crate) fn is_unmet(&self) -> bool {
+        matches!(self, StepError::NotSatisfied { .. } | StepError::DriveBlocked { .. })
+    }
+}
+
+/// An end of a curve that a bead cannot pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CurveEnd {
+    /// The first point of a spline or polyline that is not closed.
+    First,
+    /// The last point of a spline or polyline that is not closed.
+    Last,
+    /// A place beyond which the expressions of a path have no value.
+    Undefined,
+}
+
+fn rate_left(row: &str, rate: f64, drive: Option<&str>) -> String {
+    let cause = match drive {
+        Some(drive) => format!("the drive `{drive}` asks for velocities that the other constraints do not allow"),
+        None => "no velocities satisfy the constraints".to_owned(),
+    };
+    format!("{cause}: `{row}` would leave zero at {rate:.3e} a second")
+}
+
+fn at_the_end(particle: &str, constraint: &str, end: CurveEnd) -> String {
+    let point = match end {
+        CurveEnd::First => "first",
+        CurveEnd::Last => "last",
+        CurveEnd::Undefined => {
+            return format!("`{particle}` comes to a place on `{constraint}` beyond which its path has no value");
+        }
+    };
+    format!(
+        "`{particle}` comes to the {point} point of `{constraint}`, where that ends: give it more points, or close it"
+    )
+}
+
+fn without_gradient(constraint: &str, ends: &[String]) -> String {
+    match ends {
+        [] => format!(
+            "the gradient of `{constraint}` jumps or has no value, as that of |x| at x = 0, so that its force is not \
+             defined there: write it in a form that is smooth, or keep the motion away from there"
+        ),
+        [end] => format!(
+            "`{constraint}` leaves `{end}` no distance from its centre, so that its force has no direction: keep them \
+             apart"
+        ),
+        [a, b, ..] => format!(
+            "`{constraint}` has no length left between `{a}` and `{b}`, so that its force has no direction there: keep \
+             them apart"
+        ),
+    }
 }
 
 /// The constraint that couples most pairs, in words.

@@ -166,7 +166,7 @@ pub use constraint::*;
 pub use driven::Driven;
 pub use energy::Energy;
 pub use ensemble::{run_all, step_all};
-pub use error::StepError;
+pub use error::{CurveEnd, StepError};
 pub use expression::{Expression, ExpressionError, ParameterError, Purpose, Scope};
 pub use force::{
     Actuator, AirDrag, CentralForce, CubicSpring, CustomForce, CustomPotential, Drag, ExpressionForce,

@@ -224,6 +224,19 @@ impl Settings {
         let work = self.frame_work;
         in_range("frame_work", work as f64, work >= 1, "at least 1")
     }
+
+    /// The number of steps of h in a frame \[s\], for an integrator with fixed steps.
+    ///
+    /// # Errors
+    /// If they do not fill the frame, to a billionth of a step (a frame is a quotient of two numbers a user typed).
+    pub fn steps_in(&self, frame: f64) -> Result<usize, SettingsError> {
+        let steps = (frame / self.h).round();
+        if steps >= 1.0 && (frame / self.h - steps).abs() <= 1e-9 * steps {
+            Ok(steps as usize)
+        } else {
+            Err(SettingsError::FrameNotMultiple { frame, h: self.h })
+        }
+    }
 }
 
 /// `Ok` if a setting is finite and within its range; otherwise an error that names the setting and the range.

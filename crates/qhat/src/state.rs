@@ -12,6 +12,8 @@ pub struct State {
     pub(crate) work: Work,
     /// The mode of every contact, and the broken constraints.
     pub(crate) modes: Modes,
+    /// s of the foot of every bead on its curve, in the order of the constraints; empty where no step has found them.
+    pub(crate) feet: Vec<f64>,
     pub(crate) carry: Option<Carry>,
     /// `None` until the equation is first solved there.
     pub(crate) rank: Option<Arc<Rank>>,
@@ -91,7 +93,8 @@ pub(crate) struct Previous {
 
 impl State {
     pub(crate) fn new(q: Vec<f64>, qd: Vec<f64>) -> Self {
-        State { q, qd, t: 0.0, work: Work::default(), modes: Modes::default(), carry: None, rank: None }
+        let (work, modes, feet) = (Work::default(), Modes::default(), Vec::new());
+        State { q, qd, t: 0.0, work, modes, feet, carry: None, rank: None }
     }
 
     /// q \[m\], d·n numbers, particle after particle.
@@ -121,7 +124,8 @@ impl State {
     /// If the lengths differ from d·n.
     pub fn with_motion(&self, positions: Vec<f64>, velocities: Vec<f64>) -> State {
         assert_eq!((positions.len(), velocities.len()), (self.q.len(), self.qd.len()), "d·n numbers each");
-        let mut state = State { q: positions, qd: velocities, carry: None, rank: None, ..self.clone() };
+        let state = self.clone();
+        let mut state = State { q: positions, qd: velocities, feet: Vec::new(), carry: None, rank: None, ..state };
         // The next frame finds the contacts that are closed there. Broken constraints stay broken.
         state.modes.contacts.fill(Mode::Open);
         state

@@ -584,3 +584,11 @@ const PIECES: [&str; 33] = [
     "a", "b.x", "bob.vy", "c.z", "k", "t", "pi", "1", "2.5", "0", "1e9", "+", "-", "*", "/", "^", "(", ")", "[", "]",
     ",", " ", "sin(", "dist(", "cross(", "area(", "volume(", "min(", "ln(", "[1,2]", "[1,2,3]", "both", "a.",
 ];
+
+/// `log` is another name of `ln`, as in most languages.
+#[test]
+fn log_is_ln() {
+    for text in ["log(2)", "ln(2)"] {
+        assert_eq!(qhat::Driven::text(text).unwrap().value(0.0), std::f64::consts::LN_2, "{text}");
+    }
+}

@@ -19,6 +19,7 @@ mod contacts_start;
 mod custom;
 mod degenerate;
 mod docs;
+mod edges;
 mod equivalence;
 mod examples;
 mod expression;

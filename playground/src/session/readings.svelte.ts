@@ -151,9 +151,11 @@ export class Readings {
     const simulation = this.session.run?.simulation;
     const projection = simulation?.projection();
     if (!simulation || !projection || simulation.time > 0) return [];
-    if (projection.moved === 0 && projection.velocity_changed === 0) return [];
-    const moved = `${format(projection.moved)} m and ${format(projection.velocity_changed)} m/s`;
-    return [`The start did not satisfy the constraints; it was moved onto them, by at most ${moved}.`];
+    const changes: string[] = [];
+    if (projection.is_moved) changes.push(`positions by up to ${format(projection.moved)} m`);
+    if (projection.is_turned) changes.push(`velocities by up to ${format(projection.velocity_changed)} m/s`);
+    if (changes.length === 0) return [];
+    return [`The start did not satisfy the constraints; it was changed so that it does: ${changes.join(", ")}.`];
   }
 
   private readTerms(): Terms | null {

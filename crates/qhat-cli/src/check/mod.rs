@@ -10,6 +10,7 @@ mod components;
 use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
 use crate::print::{self, count, small};
+use crate::run::frames::Frames;
 use crate::source::Source;
 use components::Components;
 use qhat::{Integrator, ParticleId, Settings, Simulation, Solver, Terms, evaluate, larger};
@@ -36,7 +37,7 @@ pub(crate) fn check(arguments: &arguments::Check) -> Result<ExitCode, Failure> {
     } else {
         findings.print()?;
     }
-    Ok(if findings.feasible { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
+    Ok(if findings.feasible && findings.refused.is_none() { ExitCode::SUCCESS } else { ExitCode::from(NOT_REACHED) })
 }
 
 fn invalid(errors: &SceneErrors) -> serde_json::Value {
@@ -68,6 +69,13 @@ struct Findings {
     feasible: bool,
     /// The largest distance of a particle from its position in the file to those positions \[m\].
     start_moved: Option<f64>,
+    /// The largest change of a velocity at the start [m/s].
+    start_velocity_changed: Option<f64>,
+    /// Whether that change is more than the tolerance explains.
+    #[serde(skip)]
+    is_turned: bool,
+    /// Why `qhat run` would refuse the scene; none where it would not.
+    refused: Option<String>,
     /// The rank of A at those positions, as are all numbers below; none where A is singular and too large to count.
     rank: Option<usize>,
     degrees_of_freedom: Option<usize>,
@@ -125,20 +133,20 @@ impl Findings {
         let simulation = Simulation::new(system.clone(), scene.state.clone(), settings);
         let mut warnings: Vec<String> = Vec::new();
         let (mut freedom, mut second_order) = (None, Vec::new());
-        let (terms, moved) = match simulation {
+        let (terms, projection) = match simulation {
             Ok(mut simulation) => {
                 freedom = simulation.freedom();
                 let name = |id: &ParticleId| system.particle_names()[id.index()].clone();
                 let cliques = simulation.second_order().iter();
                 second_order = cliques.map(|clique| clique.particles.iter().map(name).collect()).collect();
-                (simulation.terms(), Some(simulation.projection().moved))
+                (simulation.terms(), Some(simulation.projection().clone()))
             }
             Err(error) => {
                 warnings.push(error.to_string());
                 (start.clone(), None)
             }
         };
-        let feasible = moved.is_some();
+        let feasible = projection.is_some();
         warnings.extend(terms.warnings.iter().filter(|_| feasible).map(ToString::to_string));
 
         let free_particles = terms.inverse_masses.iter().filter(|&&w| w > 0.0).count();
@@ -166,7 +174,10 @@ impl Findings {
             worst_row_at_start: worst.filter(|_| !consistent).map(|row| system.row_names()[row].clone()),
             consistent_at_start: consistent,
             feasible,
-            start_moved: moved,
+            start_moved: projection.as_ref().map(|projection| projection.moved),
+            start_velocity_changed: projection.as_ref().map(|projection| projection.velocity_changed),
+            is_turned: projection.is_some_and(|projection| projection.is_turned),
+            refused: refused(scene),
             rank,
             degrees_of_freedom: rank.map(|rank| coordinates.saturating_sub(rank)),
             degrees_of_freedom_nearby: freedom.map(|freedom| freedom.nearby),
@@ -213,12 +224,21 @@ impl Findings {
             lines.push(("component", format!("and {others} smaller")));
         }
         lines.extend(self.first_frame.iter().map(|beginning| ("first frame", beginning.in_words())));
+        if let Some(change) = self.start_velocity_changed.filter(|_| self.is_turned) {
+            let text = format!("every velocity is as the constraints allow after changes of up to {change:.3e} m/s");
+            lines.insert(3, ("velocities", text));
+        }
+        lines.extend(self.refused.iter().map(|reason| ("run", format!("refused: {reason}"))));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         print::table(&format!("{}: {}", self.scene, self.verdict()), &lines)
     }
 
     fn verdict(&self) -> &'static str {
-        if self.feasible { "valid" } else { "valid, but its constraints cannot all hold" }
+        match (self.feasible, &self.refused) {
+            (false, _) => "valid, but its constraints cannot all hold",
+            (true, Some(_)) => "valid, but `qhat run` would refuse it",
+            (true, None) => "valid",
+        }
     }
 
     fn start(&self) -> String {
@@ -233,6 +253,14 @@ impl Findings {
             }
         }
     }
+}
+
+/// Why `qhat run` would refuse a scene.
+fn refused(scene: &Scene) -> Option<String> {
+    let frames = Frames::new(scene.duration, None, &scene.settings);
+    let is_adaptive = scene.settings.integrator.is_adaptive();
+    let checked = frames.and_then(|frames| if is_adaptive { Ok(()) } else { frames.check(&scene.settings) });
+    checked.err().map(|failure| failure.message().replace('\n', "; "))
 }
 
 fn is_on_free_particle(terms: &Terms, row: usize) -> bool {

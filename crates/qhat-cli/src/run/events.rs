@@ -13,6 +13,16 @@ pub(super) struct Events {
     slipped: usize,
     stuck: usize,
     broke: Vec<Break>,
+    /// The impact with the largest impulse.
+    largest_impulse: Option<Blow>,
+}
+
+/// An impact: its constraint, time \[s\] and impulse \[N·s\].
+#[derive(Debug, PartialEq, Serialize)]
+struct Blow {
+    constraint: String,
+    time: f64,
+    impulse: f64,
 }
 
 /// A constraint that broke, and the time \[s\].
@@ -20,17 +30,28 @@ pub(super) struct Events {
 struct Break {
     constraint: String,
     time: f64,
+    /// The impulse that broke it \[N·s\]; 0 where a tension did.
+    impulse: f64,
 }
 
 impl Events {
     pub(super) fn note(&mut self, event: &Event) {
         match event.kind {
-            EventKind::Impact { .. } => self.impacts += 1,
+            EventKind::Impact { .. } => {
+                self.impacts += 1;
+                if self.largest_impulse.as_ref().is_none_or(|former| former.impulse < event.impulse) {
+                    let Event { constraint, time, impulse, .. } = event.clone();
+                    self.largest_impulse = Some(Blow { constraint, time, impulse });
+                }
+            }
             EventKind::Closed => self.closed += 1,
             EventKind::Opened => self.opened += 1,
             EventKind::Slipped => self.slipped += 1,
             EventKind::Stuck => self.stuck += 1,
-            EventKind::Broke => self.broke.push(Break { constraint: event.constraint.clone(), time: event.time }),
+            EventKind::Broke => {
+                let Event { constraint, time, impulse, .. } = event.clone();
+                self.broke.push(Break { constraint, time, impulse });
+            }
             // Kinds of a later engine are counted when they have a word here.
             _ => {}
         }
@@ -50,8 +71,13 @@ impl Events {
             }
         }
         let counts = (!counts.is_empty()).then(|| counts.join(", "));
-        let broke =
-            self.broke.iter().map(|Break { constraint, time }| format!("{constraint} broke at t = {time:.6} s"));
-        counts.into_iter().chain(broke).collect()
+        let broke = self.broke.iter().map(|Break { constraint, time, impulse }| {
+            let cause = if *impulse > 0.0 { format!(", by an impulse of {impulse:.4} N·s") } else { String::new() };
+            format!("{constraint} broke at t = {time:.6} s{cause}")
+        });
+        let largest = self.largest_impulse.iter().map(|Blow { constraint, time, impulse }| {
+            format!("the largest impulse: {impulse:.4} N·s in {constraint} at t = {time:.6} s")
+        });
+        counts.into_iter().chain(largest).chain(broke).collect()
     }
 }

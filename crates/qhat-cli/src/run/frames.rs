@@ -24,7 +24,7 @@ impl Frames {
     /// Frames of a duration \[s\]: `count` of them, or else as many as h fits into the duration.
     ///
     /// # Errors
-    /// A duration that is not positive and finite, and too many frames.
+    /// A duration that is not positive and finite, no frames, and too many.
     pub(crate) fn new(duration: f64, count: Option<usize>, settings: &Settings) -> Result<Self, Failure> {
         if !(duration.is_finite() && duration > 0.0) {
             return Err(Failure::input(format!("the duration must be positive and finite, but is {duration} s")));
@@ -33,6 +33,9 @@ impl Frames {
             Some(count) => count as f64,
             None => fitting(duration, settings),
         };
+        if wanted == 0.0 {
+            return Err(Failure::input("a run of 0 frames simulates nothing; ask for one or more with --frames"));
+        }
         if wanted > MOST {
             return Err(Failure::input(format!(
                 "{wanted:e} frames are more than the {MOST:e} that qhat writes; ask for fewer with --frames"
@@ -49,6 +52,14 @@ impl Frames {
     /// t_{i+1} − t_i \[s\].
     pub(crate) fn length(&self) -> f64 {
         self.duration / self.count as f64
+    }
+
+    /// `Ok` if a fixed-step integrator can end a step at every frame.
+    ///
+    /// # Errors
+    /// As [`Frames::refused`].
+    pub(crate) fn check(&self, settings: &Settings) -> Result<(), Failure> {
+        settings.steps_in(self.length()).map(|_| ()).map_err(|error| self.refused(&error, settings))
     }
 
     /// The failure where a fixed-step integrator cannot end a step at a frame.

@@ -1,4 +1,4 @@
-//! Ctrl-C: the first ends a run after the current frame, so that the frames reached are kept; the second ends the
+//! Ctrl-C, and the signals SIGTERM and SIGHUP, which are handled alike: the first ends a run after the current frame, so that the frames reached are kept; the second ends the
 //! process at once.
 
 use crate::failure::{Failure, INTERRUPTED};

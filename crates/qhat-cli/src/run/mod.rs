@@ -8,7 +8,7 @@ pub(crate) mod progress;
 mod summary;
 
 use crate::arguments;
-use crate::failure::{Failure, warn};
+use crate::failure::{BAD_INPUT, Failure, warn};
 use crate::print;
 use crate::source::Source;
 use crate::trajectory::{Recorder, Target};
@@ -67,7 +67,10 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     if let Some(message) = &origin.error {
         warn(format!("{}: {message}", origin.status));
     }
-    Ok(origin.status.exit_code())
+    Ok(match stopped {
+        Some(Stop::Unwritten(_)) => ExitCode::from(BAD_INPUT),
+        _ => origin.status.exit_code(),
+    })
 }
 
 /// The scene's settings, changed by the options of the command line.
@@ -82,6 +85,9 @@ fn settings(arguments: &arguments::Run, scene: Settings) -> Result<Settings, Fai
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
+    if let Some(max_substeps) = arguments.max_substeps {
+        settings.max_substeps = max_substeps;
+    }
     settings.check().map_err(Failure::input)?;
     Ok(settings)
 }
@@ -90,6 +96,8 @@ fn settings(arguments: &arguments::Run, scene: Settings) -> Result<Settings, Fai
 enum Stop {
     Error(StepError),
     Interrupt,
+    /// A frame could not be written.
+    Unwritten(Failure),
 }
 
 /// A run in progress.
@@ -104,7 +112,7 @@ struct Job {
 impl Job {
     /// Steps from frame to frame. Returns the reason where the run ends early.
     fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
-        self.tally.moved = simulation.projection().moved;
+        self.tally.begun(&simulation);
         let terms = simulation.terms();
         self.start(simulation.system(), &terms)?;
         for index in 1..=self.frames.count {
@@ -123,7 +131,9 @@ impl Job {
             }
             if self.recorder.is_some() {
                 let terms = simulation.terms();
-                self.record(simulation.system(), self.frames.time(index), &terms)?;
+                if let Err(failure) = self.record(simulation.system(), self.frames.time(index), &terms) {
+                    return Ok(Some(Stop::Unwritten(failure)));
+                }
             } else {
                 self.tally.frames += 1;
             }

@@ -79,7 +79,12 @@ impl Origin {
         (self.status, self.error) = match stopped {
             None => (Status::Done, None),
             Some(Stop::Interrupt) => {
-                (Status::Interrupted, Some(format!("stopped by Ctrl-C at t = {} s", Seconds(tally.time_reached))))
+                let reached = Seconds(tally.time_reached);
+                (Status::Interrupted, Some(format!("stopped at t = {reached} s by Ctrl-C, SIGTERM or SIGHUP")))
+            }
+            Some(Stop::Unwritten(failure)) => {
+                let message = format!("{}; of the frames before, those that were written are kept", failure.message());
+                (Status::Interrupted, Some(message))
             }
             Some(Stop::Error(StepError::Settings(error))) => return Err(Failure::input(error)),
             Some(Stop::Error(error)) => (Status::of(error), Some(error.to_string())),

@@ -24,7 +24,11 @@ pub(crate) struct Tally {
     energy_error: f64,
     energy_error_max: f64,
     /// The largest move of a particle to the consistent start \[m\].
-    pub(super) moved: f64,
+    moved: f64,
+    /// The largest change of a velocity at the start [m/s].
+    velocity_changed: f64,
+    /// Whether these changes are more than the tolerances explain.
+    start_is_off: [bool; 2],
     /// t of the last good state \[s\].
     pub(super) time_reached: f64,
     pub(super) cpu: Duration,
@@ -59,6 +63,13 @@ struct Carried {
 }
 
 impl Tally {
+    /// Notes the change that made the start consistent.
+    pub(super) fn begun(&mut self, simulation: &Simulation) {
+        let projection = simulation.projection();
+        (self.moved, self.velocity_changed) = (projection.moved, projection.velocity_changed);
+        self.start_is_off = [projection.is_moved, projection.is_turned];
+    }
+
     /// Notes the length errors at the start.
     pub(super) fn start(&mut self, system: &System, terms: &Terms) {
         let rods = system.links().filter(|link| link.is_rod()).map(|rod| rod.rows.start);
@@ -157,6 +168,9 @@ pub(crate) struct Summary<'a> {
     wall_seconds: f64,
     cpu_seconds: f64,
     start_moved: f64,
+    start_velocity_changed: f64,
+    #[serde(skip)]
+    start_is_off: [bool; 2],
     max_residual: f64,
     max_relative_length_error: f64,
     energy_error: f64,
@@ -185,6 +199,8 @@ impl<'a> Summary<'a> {
             wall_seconds: wall.as_secs_f64(),
             cpu_seconds: tally.cpu.as_secs_f64(),
             start_moved: tally.moved,
+            start_velocity_changed: tally.velocity_changed,
+            start_is_off: tally.start_is_off,
             max_residual: tally.max_residual,
             max_relative_length_error: tally.max_relative_length_error,
             energy_error: tally.energy_error,
@@ -241,8 +257,16 @@ impl<'a> Summary<'a> {
             lines.insert(0, ("caution", caution.clone()));
         }
         lines.extend(self.events.lines().into_iter().map(|line| ("events", line)));
-        if self.start_moved > 0.0 {
-            lines.push(("start", format!("moved by up to {:.1e} m, so that every constraint holds", self.start_moved)));
+        let [is_moved, is_turned] = self.start_is_off;
+        if is_moved {
+            lines.push(("start", format!("moved by up to {:.2e} m, so that every constraint holds", self.start_moved)));
+        }
+        if is_turned {
+            let change = self.start_velocity_changed;
+            lines.push((
+                "start",
+                format!("velocities changed by up to {change:.2e} m/s, so that every constraint holds"),
+            ));
         }
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         lines

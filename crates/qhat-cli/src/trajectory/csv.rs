@@ -3,24 +3,31 @@
 use super::target::Target;
 use crate::failure::Failure;
 use qhat::{System, Terms};
-use std::fmt::Write;
-use std::io;
+use std::fmt::Write as _;
+use std::io::{self, Read, Seek, SeekFrom, Write as _};
 use tempfile::NamedTempFile;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Bytes of whole lines that are gathered before they are written.
+const GATHERED: usize = 1 << 16;
+
 /// A trajectory being written as CSV.
 pub(crate) struct Recorder {
     target: Target,
-    csv: csv::Writer<NamedTempFile>,
+    file: NamedTempFile,
+    /// The bytes of whole lines in the file.
+    written: u64,
+    /// Lines that are not in the file yet.
+    lines: csv::Writer<Vec<u8>>,
     number: String,
 }
 
 impl Recorder {
     pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
-        let csv = csv::Writer::from_writer(target.temporary()?);
-        let mut recorder = Recorder { target, csv, number: String::new() };
-        recorder.csv.write_record(columns(system)).map_err(|error| recorder.failed(error))?;
+        let (file, lines) = (target.temporary()?, csv::Writer::from_writer(Vec::new()));
+        let mut recorder = Recorder { target, file, written: 0, lines, number: String::new() };
+        recorder.lines.write_record(columns(system)).map_err(|error| recorder.failed(&io::Error::other(error)))?;
         Ok(recorder)
     }
 
@@ -35,28 +42,84 @@ impl Recorder {
             &terms.tension,
             &is_unique,
         ];
-        self.write(arrays.into_iter().flatten()).map_err(|error| self.failed(error))
+        self.add(arrays.into_iter().flatten()).map_err(|error| self.failed(&io::Error::other(error)))?;
+        let outcome = if self.lines.get_ref().len() >= GATHERED { self.write() } else { Ok(()) };
+        outcome.map_err(|error| self.failed(&error))
     }
 
-    pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
-        let file = self.csv.into_inner().map_err(|failed| self.target.cannot_write(failed.error()))?;
-        // The origin comes first, so that no CSV is ever without its origin.
-        self.target.put_origin(origin)?;
-        self.target.put(file)
+    /// Puts the origin and the lines in place. On a full disk the last half of the lines is given up, again and again,
+    /// until the origin fits beside the rest.
+    pub(super) fn finish(mut self, origin: &str) -> Result<(), Failure> {
+        let mut outcome = self.write();
+        loop {
+            // The origin comes first, so that no CSV is ever without its origin.
+            let placed = self.target.put_origin(origin);
+            match placed {
+                Ok(()) => return self.target.put(self.file),
+                Err(failure) => {
+                    let is_cut = self.give_up_half();
+                    if !is_cut.as_ref().is_ok_and(|is_cut| *is_cut) {
+                        return Err(outcome.err().map_or(failure, |error| self.target.cannot_write(&error)));
+                    }
+                    outcome = Ok(());
+                }
+            }
+        }
     }
 
-    fn write<'a>(&mut self, numbers: impl Iterator<Item = &'a f64>) -> csv::Result<()> {
+    /// Brings the gathered lines to the file; where the disk is full, the file ends with the lines before them.
+    fn write(&mut self) -> io::Result<()> {
+        self.lines.flush()?;
+        let bytes =
+            std::mem::replace(&mut self.lines, csv::Writer::from_writer(Vec::new())).into_inner().unwrap_or_default();
+        let file = self.file.as_file_mut();
+        match file.write_all(&bytes) {
+            Ok(()) => self.written += bytes.len() as u64,
+            Err(error) => {
+                // The lines that are whole on the disk stay.
+                let reached = file.stream_position()?.saturating_sub(self.written) as usize;
+                let whole = bytes[..reached.min(bytes.len())].iter().rposition(|&byte| byte == b'\n');
+                self.written += whole.map_or(0, |end| end as u64 + 1);
+                self.cut()?;
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Shortens the file to about half of its lines; whether there were any behind the header.
+    fn give_up_half(&mut self) -> io::Result<bool> {
+        let mut text = Vec::new();
+        self.file.as_file_mut().rewind()?;
+        self.file.as_file_mut().read_to_end(&mut text)?;
+        let end = text[..text.len() / 2].iter().rposition(|&byte| byte == b'\n');
+        match end {
+            Some(end) => {
+                self.written = end as u64 + 1;
+                self.cut().map(|()| true)
+            }
+            None => Ok(false),
+        }
+    }
+
+    fn cut(&mut self) -> io::Result<()> {
+        let file = self.file.as_file_mut();
+        file.set_len(self.written)?;
+        file.seek(SeekFrom::Start(self.written)).map(|_| ())
+    }
+
+    fn add<'a>(&mut self, numbers: impl Iterator<Item = &'a f64>) -> csv::Result<()> {
         for number in numbers {
             self.number.clear();
             // The shortest decimal that reads back as the same bits, with an exponent where that is shorter.
             let _ = write!(self.number, "{number:?}");
-            self.csv.write_field(&self.number)?;
+            self.lines.write_field(&self.number)?;
         }
-        self.csv.write_record(None::<&[u8]>)
+        self.lines.write_record(None::<&[u8]>)
     }
 
-    fn failed(&self, error: csv::Error) -> Failure {
-        self.target.cannot_write(&io::Error::other(error))
+    fn failed(&self, error: &io::Error) -> Failure {
+        self.target.cannot_write(error)
     }
 }
 

@@ -1,14 +1,16 @@
 //! NPZ: a zip with an NPY file for each array, as `numpy.load` reads it, without pickles.
 //!
 //! An NPY file begins with its shape, and the number of frames is known only at the end, because a run may diverge. So
-//! each array grows in a file of its own, and the zip is written at the end.
+//! each array grows in a file of its own, and the zip is written at the end. A disk that is full then keeps a part of the
+//! frames.
 
 use super::npy;
 use super::target::Target;
 use crate::failure::Failure;
 use qhat::{System, Terms};
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Seek, Write};
+use std::io::{self, BufReader, BufWriter, Seek, SeekFrom, Write};
+use tempfile::NamedTempFile;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -28,13 +30,33 @@ impl Array {
     fn append(&mut self, numbers: &[f64]) -> io::Result<()> {
         numbers.iter().try_for_each(|number| self.file.write_all(&number.to_le_bytes()))
     }
+
+    /// The bytes of one row.
+    fn row(&self) -> u64 {
+        8 * self.shape.iter().product::<usize>() as u64
+    }
+
+    /// Gives up what is not on the disk yet. Returns the number of whole rows there; none where rows have no bytes.
+    fn give_up(self) -> io::Result<(Self, Option<u64>)> {
+        let row = self.row();
+        let Array { name, shape, file } = self;
+        let (file, _) = file.into_parts();
+        let whole = file.metadata()?.len().checked_div(row);
+        Ok((Array { name, shape, file: BufWriter::new(file) }, whole))
+    }
+
+    /// Shortens the file to so many rows.
+    fn cut(&mut self, rows: u64) -> io::Result<()> {
+        self.file.get_ref().set_len(rows * self.row())?;
+        self.file.seek(SeekFrom::End(0)).map(|_| ())
+    }
 }
 
 /// A trajectory being written as NPZ.
 pub(crate) struct Recorder {
     target: Target,
     frames: usize,
-    arrays: [Array; 7],
+    arrays: Vec<Array>,
     names: Vec<(&'static str, Vec<String>)>,
 }
 
@@ -45,7 +67,7 @@ impl Recorder {
         let array = |name, shape: &[usize]| -> Result<Array, Failure> {
             Ok(Array { name, shape: shape.to_vec(), file: BufWriter::new(target.scratch()?) })
         };
-        let arrays = [
+        let arrays = vec![
             array("t", &[])?,
             array("positions", &[n, d])?,
             array("velocities", &[n, d])?,
@@ -73,36 +95,78 @@ impl Recorder {
             &terms.tension,
             &is_unique,
         ];
-        self.frames += 1;
         let mut arrays = self.arrays.iter_mut().zip(rows);
-        arrays.try_for_each(|(array, row)| array.append(row)).map_err(|error| self.target.cannot_write(&error))
+        match arrays.try_for_each(|(array, row)| array.append(row)) {
+            Ok(()) => {
+                self.frames += 1;
+                Ok(())
+            }
+            Err(error) => {
+                let failure = self.target.cannot_write(&error);
+                self.keep_whole_frames().map_err(|error| self.target.cannot_write(&error))?;
+                Err(failure)
+            }
+        }
     }
 
-    pub(super) fn finish(self, origin: &str) -> Result<(), Failure> {
-        let target = self.target;
-        let file = target.temporary()?;
+    /// Shortens all arrays to the frames that are whole on the disk.
+    fn keep_whole_frames(&mut self) -> io::Result<()> {
+        let mut frames = self.frames as u64;
+        let mut arrays = Vec::new();
+        for array in std::mem::take(&mut self.arrays) {
+            let (array, whole) = array.give_up()?;
+            frames = frames.min(whole.unwrap_or(frames));
+            arrays.push(array);
+        }
+        self.arrays = arrays;
+        self.cut(frames as usize)
+    }
+
+    fn cut(&mut self, frames: usize) -> io::Result<()> {
+        self.frames = frames;
+        self.arrays.iter_mut().try_for_each(|array| array.cut(frames as u64))
+    }
+
+    /// Packs the arrays. On a full disk the last half of the frames is given up, again and again, until the rest fits.
+    pub(super) fn finish(mut self, origin: &str) -> Result<(), Failure> {
+        if self.arrays.iter_mut().try_for_each(|array| array.file.flush()).is_err() {
+            self.keep_whole_frames().map_err(|error| self.target.cannot_write(&error))?;
+        }
+        loop {
+            match self.pack(origin) {
+                Ok(file) => return self.target.put(file),
+                Err(error) if self.frames <= 1 || error.kind() != io::ErrorKind::StorageFull => {
+                    return Err(self.target.cannot_write(&error));
+                }
+                Err(_) => {
+                    let half = self.frames.div_ceil(2);
+                    self.cut(half).map_err(|error| self.target.cannot_write(&error))?;
+                }
+            }
+        }
+    }
+
+    fn pack(&mut self, origin: &str) -> io::Result<NamedTempFile> {
+        let file = self.target.temporary_file()?;
         // The bytes depend on the scene and the settings alone, so that two runs can be compared. They hold no date.
         let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
-        let pack = || -> io::Result<()> {
-            let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
-            for array in self.arrays {
-                let shape = [&[self.frames], array.shape.as_slice()].concat();
-                let mut numbers = array.file.into_inner()?;
-                let wide = numbers.stream_position()? > WIDE;
-                numbers.rewind()?;
-                zip.start_file(format!("{}.npy", array.name), options.large_file(wide))?;
-                zip.write_all(&npy::header(npy::FLOAT64, &shape))?;
-                io::copy(&mut BufReader::new(numbers), &mut zip)?;
-            }
-            for (name, texts) in &self.names {
-                zip.start_file(format!("{name}.npy"), options)?;
-                zip.write_all(&npy::texts(&[texts.len()], texts))?;
-            }
-            zip.start_file("origin.npy", options)?;
-            zip.write_all(&npy::texts(&[], &[origin]))?;
-            zip.finish()?.flush()
-        };
-        pack().map_err(|error| target.cannot_write(&error))?;
-        target.put(file)
+        let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
+        for array in &mut self.arrays {
+            let shape = [&[self.frames], array.shape.as_slice()].concat();
+            let numbers = array.file.get_mut();
+            let wide = numbers.metadata()?.len() > WIDE;
+            numbers.rewind()?;
+            zip.start_file(format!("{}.npy", array.name), options.large_file(wide))?;
+            zip.write_all(&npy::header(npy::FLOAT64, &shape))?;
+            io::copy(&mut BufReader::new(numbers), &mut zip)?;
+        }
+        for (name, texts) in &self.names {
+            zip.start_file(format!("{name}.npy"), options)?;
+            zip.write_all(&npy::texts(&[texts.len()], texts))?;
+        }
+        zip.start_file("origin.npy", options)?;
+        zip.write_all(&npy::texts(&[], &[origin]))?;
+        zip.finish()?.flush()?;
+        Ok(file)
     }
 }

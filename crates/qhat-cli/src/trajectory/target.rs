@@ -47,6 +47,11 @@ impl Target {
         self.output.temporary()
     }
 
+    /// The same, with the error of the system.
+    pub(crate) fn temporary_file(&self) -> io::Result<NamedTempFile> {
+        self.output.temporary_file()
+    }
+
     /// Renames a finished file to the target.
     pub(crate) fn put(&self, file: NamedTempFile) -> Result<(), Failure> {
         self.output.put(file)

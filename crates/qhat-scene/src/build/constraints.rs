@@ -21,8 +21,10 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_constraints(&mut self, constraints: &[Constraint]) {
         for (index, constraint) in constraints.iter().enumerate() {
             let place = self.tree.key("constraints").item(index);
+            self.adding = place.span.clone();
             self.add_constraint(constraint, place);
         }
+        self.adding = 0..0;
     }
 
     /// Adds a constraint under the name that the scene gives it, or under its default name.
@@ -34,13 +36,22 @@ impl Assembly<'_, '_, '_> {
     /// The name that the scene gives a constraint, or else its default name.
     pub(super) fn name_of(&mut self, it: &impl Named) -> String {
         match it.id() {
-            Some(Name(name)) => name.clone(),
+            Some(Name(name)) => {
+                self.note_place(name);
+                name.clone()
+            }
             None => self.free_name(it.default_name()),
         }
     }
 
     /// The name, with a number behind it where it is taken: two rods between the same particles are allowed.
     pub(super) fn free_name(&mut self, wanted: String) -> String {
+        let name = self.first_free_name(wanted);
+        self.note_place(&name);
+        name
+    }
+
+    fn first_free_name(&mut self, wanted: String) -> String {
         if self.constraint_names.insert(wanted.clone()) {
             return wanted;
         }
@@ -53,6 +64,13 @@ impl Assembly<'_, '_, '_> {
             if self.constraint_names.insert(name.clone()) {
                 return name;
             }
+        }
+    }
+
+    /// Keeps the place of a constraint for errors that only the engine finds.
+    fn note_place(&mut self, name: &str) {
+        if !self.adding.is_empty() {
+            self.places.insert(name.to_owned(), self.adding.clone());
         }
     }
 

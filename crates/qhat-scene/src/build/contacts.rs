@@ -15,24 +15,19 @@ impl Assembly<'_, '_, '_> {
             Some(length) => length,
             None => self.measured_length("rope", &it.between, (a, b), place)?,
         };
-        let Rope { restitution, breaks_at, .. } = *it;
+        let Rope { restitution, breaks_at, breaks_at_impulse, .. } = *it;
         let rope = qhat::Limits::rope(a, b, length);
         let stiffness = it.stiffness.unwrap_or(rope.stiffness);
-        self.add_placed(it, qhat::Limits { restitution, breaks_at, stiffness, ..rope }, place)
+        self.add_named(it, qhat::Limits { restitution, breaks_at, breaks_at_impulse, stiffness, ..rope });
+        Some(())
     }
 
     pub(super) fn add_limits(&mut self, it: &Limits, place: &Node) -> Option<()> {
         let (a, b) = self.pair(&it.between, place.key("between"))?;
-        let Limits { shortest, longest, restitution, breaks_at, .. } = *it;
+        let Limits { shortest, longest, restitution, breaks_at, breaks_at_impulse, .. } = *it;
         let stiffness = it.stiffness.unwrap_or(1.0);
-        self.add_placed(it, qhat::Limits { a, b, shortest, longest, restitution, breaks_at, stiffness }, place)
-    }
-
-    /// Adds limits, and keeps their place in the text for errors of the engine about the start.
-    fn add_placed(&mut self, it: &impl Named, limits: qhat::Limits, place: &Node) -> Option<()> {
-        let name = self.name_of(it);
-        self.places.insert(name.clone(), place.span.clone());
-        self.builder.constraint(name, limits);
+        let limits = qhat::Limits { a, b, shortest, longest, restitution, breaks_at, breaks_at_impulse, stiffness };
+        self.add_named(it, limits);
         Some(())
     }
 
@@ -82,7 +77,6 @@ impl Assembly<'_, '_, '_> {
         for particle in self.listed_or_free(particles, place)? {
             let name = format!("{stem}({})", self.builder.name(particle));
             let name = self.free_name(name);
-            self.places.insert(name.clone(), place.span.clone());
             self.builder.constraint(name, Obstacle { particle, surface: surface.clone(), restitution, friction });
         }
         Some(())
@@ -100,7 +94,9 @@ pub(super) fn check_start(
     let Err(error) = qhat::check_start(system, state, settings) else { return };
     let place = match &error {
         StepError::NoEvents { .. } => tree.key("step").key("integrator").span.clone(),
-        StepError::Penetrates { constraint, .. } => places.get(constraint).cloned().unwrap_or_default(),
+        StepError::Penetrates { constraint, .. } | StepError::NoGradient { constraint, .. } => {
+            places.get(constraint).cloned().unwrap_or_default()
+        }
         StepError::EnergyNotFinite { particle, .. } => ids.origin(particle).unwrap_or_default(),
         _ => 0..0,
     };

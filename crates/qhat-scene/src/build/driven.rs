@@ -68,7 +68,6 @@ impl Assembly<'_, '_, '_> {
             }
         };
         let name = self.name_of(it);
-        self.places.insert(name.clone(), table.span.clone());
         self.builder.constraint(name, make(schedule));
         Some(())
     }

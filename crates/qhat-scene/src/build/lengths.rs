@@ -35,7 +35,6 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let name = self.name_of(it);
-        self.places.insert(name.clone(), place.span.clone());
         self.builder.constraint(name, Lengths::ratio([a, b], [c, d], ratio));
         Some(())
     }

@@ -59,6 +59,8 @@ struct Assembly<'a, 'r, 't> {
     /// Forces as expressions, whose values at the start have yet to be checked.
     untried: Vec<Untried>,
     places: Places,
+    /// The place in the text of the constraint that is being added.
+    adding: Range<usize>,
 }
 
 /// The scene, or `None` after reporting every error.
@@ -77,6 +79,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         next_numbers: HashMap::new(),
         untried: Vec::new(),
         places: Places::new(),
+        adding: 0..0,
     };
     assembly.add_all(&document)?;
     let Assembly { builder, report, ids, untried, places, .. } = assembly;

@@ -2,7 +2,7 @@
 
 use super::Assembly;
 use crate::model::rods::{Distance, DistanceForm, Rigid};
-use crate::model::{Driven, Id, Named};
+use crate::model::{Id, Named};
 use crate::tree::Node;
 use qhat::{ParticleId, RigidCluster, rigid_cluster};
 
@@ -26,11 +26,8 @@ impl Assembly<'_, '_, '_> {
         let rod = qhat::Distance::new(ends.0, ends.1, length).with_compliance(it.compliance, it.damping);
         let stiffness = it.stiffness.unwrap_or(rod.stiffness);
         let rod = rod.with_stiffness(stiffness);
-        if it.breaks_at.is_some() || matches!(it.length, Some(Driven::Text(_))) {
-            self.places.insert(name.clone(), place.span.clone());
-        }
-        let Distance { form, breaks_at, .. } = *it;
-        self.builder.constraint(name, qhat::Distance { form: form.into(), breaks_at, ..rod });
+        let Distance { form, breaks_at, breaks_at_impulse, .. } = *it;
+        self.builder.constraint(name, qhat::Distance { form: form.into(), breaks_at, breaks_at_impulse, ..rod });
         Some(())
     }
 
@@ -70,10 +67,10 @@ impl Assembly<'_, '_, '_> {
             self.report.error(place.key("length").span.clone(), message, Some(help));
             return None;
         }
-        if it.breaks_at.is_some() {
+        if let Some(key) = ["breaks_at", "breaks_at_impulse"].into_iter().find(|key| place.get(key).is_some()) {
             let message = "a rod whose length is an expression does not break";
-            let help = "leave out `breaks_at`, or give `length` as a number".to_owned();
-            self.report.error(place.key("breaks_at").span.clone(), message, Some(help));
+            let help = format!("leave out `{key}`, or give `length` as a number");
+            self.report.error(place.key(key).span.clone(), message, Some(help));
             return None;
         }
         let rod = qhat::Distance::driven(a, b, radius);

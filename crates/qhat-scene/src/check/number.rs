@@ -18,7 +18,15 @@ impl<'a> Checker<'a, '_, '_> {
         } else {
             return Some(json(number, schema));
         };
-        self.report.error(node.span.clone(), complaint, Some(schema.help(name)));
+        let help = if name == "length" && number == 0.0 {
+            format!(
+                "{}; two particles that stay at one place are a constraint of kind `coincidence`",
+                schema.help(name)
+            )
+        } else {
+            schema.help(name)
+        };
+        self.report.error(node.span.clone(), complaint, Some(help));
         None
     }
 }

@@ -26,6 +26,10 @@ pub(crate) struct Rope {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a jerk or a blow at which the rope breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
     /// EA of the rope [N], above 0, 1 if left out: how redundant ropes share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
@@ -59,6 +63,10 @@ pub(crate) struct Limits {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a jerk or a blow at which the constraint breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
     /// EA [N], above 0, 1 if left out: how redundant links share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]

@@ -33,6 +33,10 @@ pub(crate) struct Distance {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub(crate) breaks_at: Option<f64>,
+    /// The impulse of a blow at which the rod breaks [N·s], above 0; no impulse breaks it if left out.
+    #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub(crate) breaks_at_impulse: Option<f64>,
     /// EA of the rod [N], above 0, 1 if left out: how redundant rods share a force. The motion does not depend on it.
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0.0))]

@@ -2,6 +2,7 @@
 
 use super::{Entry, Node, Value};
 use crate::report::Report;
+use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// The tree of a TOML text, or `None` after reporting its errors.
@@ -9,7 +10,8 @@ pub(crate) fn parse(text: &str, report: &mut Report<'_>) -> Option<Node> {
     let (table, errors) = DeTable::parse_recoverable(text);
     let mut last_line = 0;
     for error in &errors {
-        let span = error.span().unwrap_or(0..0);
+        // The parser gives no place, or the beginning, where tables are nested too deep.
+        let span = error.span().filter(|span| *span != (0..0)).unwrap_or_else(|| deepest(text));
         let line = report.line_of(span.start);
         // The parser goes on after an error; later errors in the same line follow from the first.
         if line != last_line {
@@ -23,6 +25,20 @@ pub(crate) fn parse(text: &str, report: &mut Report<'_>) -> Option<Node> {
     }
     // The checks of a repaired tree would report keys that the repair lost.
     errors.is_empty().then(|| Node { span: 0..0, value: table_of(table.get_ref()) })
+}
+
+/// The line with the most levels of keys, lists and tables.
+fn deepest(text: &str) -> Range<usize> {
+    let levels = |line: &str| line.matches(['.', '[', '{']).count();
+    let mut start = 0;
+    let mut most = (0, 0..0);
+    for line in text.split_inclusive('\n') {
+        if levels(line) > most.0 {
+            most = (levels(line), start..start + line.trim_end().len());
+        }
+        start += line.len();
+    }
+    most.1
 }
 
 /// The message of the parser in one line. Where a value is missing, the parser names the last kind of value it tried,

@@ -82,6 +82,11 @@ pub(crate) fn check_restitution(value: f64) -> Result<(), ValueError> {
     if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(ValueError::Restitution { value }) }
 }
 
+/// `Ok` if the impulse that breaks a link is positive and finite, or there is none.
+pub(crate) fn check_impulse(breaks_at: Option<f64>) -> Result<(), ValueError> {
+    breaks_at.map_or(Ok(()), |impulse| positive("the impulse at which something breaks", impulse))
+}
+
 /// `Ok` if the tension that breaks a link is positive and finite, or there is none.
 pub(crate) fn check_strength(breaks_at: Option<f64>) -> Result<(), ValueError> {
     breaks_at.map_or(Ok(()), |tension| positive("the tension at which something breaks", tension))

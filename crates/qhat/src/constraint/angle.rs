@@ -92,6 +92,14 @@ impl Smooth for Angle {
         Residual { C, C_t: -rate }
     }
 
+    fn may_jump(&self) -> bool {
+        true
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        self.arms.all()
+    }
+
     fn scale(&self, _: f64) -> f64 {
         1.0
     }

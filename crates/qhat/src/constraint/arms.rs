@@ -56,6 +56,11 @@ impl Arms {
         self.ends[arm].map(|place| self.particles[place])
     }
 
+    /// The ends of every arm.
+    pub(super) fn all(&self) -> Vec<[ParticleId; 2]> {
+        (0..self.count()).map(|arm| self.ends(arm)).collect()
+    }
+
     /// Whether an arm begins and ends at the same particle.
     pub(super) fn is_without_length(&self, arm: usize) -> bool {
         self.ends[arm][0] == self.ends[arm][1]

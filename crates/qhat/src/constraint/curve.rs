@@ -5,11 +5,14 @@
 //! ∂s*/∂x = c'/(c'·c' − w·c")
 //! ```
 //!
-//! The search for s* begins at the nearest of 512 points of the curve. Newton's method follows and stays between the
-//! neighbours of that point. The foot depends on x alone and not on earlier calls, so a run that starts at a later
-//! frame gives the same bits. Where the curve comes close to itself or crosses itself, the nearest branch is taken: x
-//! does not tell on which branch the particle came. A curve must therefore not come close to itself. A polyline has its
-//! foot in closed form (polyline.rs).
+//! A curve may cross itself, and a helix goes on beyond its range, so x does not tell on which branch the particle is.
+//! The foot is therefore followed: the search for s* begins where the foot is expected (feet.rs), goes downhill along
+//! |x − c(s)|², and ends at the first minimum. A stride turns c' by no more than [`TURN`], so that it does not leave the
+//! branch. Where no foot is known, the search begins at the nearest of 512 points within the range and stays between
+//! the neighbours of that point. A polyline has its foot in closed form (polyline.rs).
+//!
+//! Beyond its range a path goes on as its expressions do. A spline or polyline that is not closed ends at its first and
+//! last point. There it goes on straight, so that a substep may look beyond; no substep is kept whose foot is beyond.
 //!
 //! On the inner side, beyond 9/10 of the radius of curvature, −g' is kept at c'·c'/10. At the full radius the foot
 //! jumps, and its derivative would be infinite. At a cusp, where c' = 0, c" gives the tangent, and the foot does not
@@ -18,6 +21,7 @@
 use super::polyline::Polyline;
 use super::spline::Spline;
 use crate::allowed::GeometryError;
+use crate::error::CurveEnd;
 use crate::expression::Expression;
 use crate::number::Number;
 use crate::point::{Point, dot, minus};
@@ -26,8 +30,15 @@ use std::sync::Arc;
 /// Number of pieces of equal parameter whose ends are compared. The search for a foot begins at the nearest end.
 const SAMPLES: usize = 512;
 /// Most iterations for one foot. Newton's method takes about five; the bisection that replaces it where it fails takes
-/// about fifty.
-const ITERATIONS: usize = 60;
+/// about fifty; strides along the whole range take [`STRIDES`].
+const ITERATIONS: usize = 400;
+/// Strides in which the search could go along the whole range.
+const STRIDES: f64 = 64.0;
+/// Angle by which c' may turn in one stride of the search [rad]: well below the half turn at which the other side of a
+/// coil would be as near.
+const TURN: f64 = 0.5;
+/// Part of the length of a curve by which a foot may lie beyond an end of it: a projection ends within 1e-10 of C = 0.
+const PAST: f64 = 1e-9;
 
 /// A smooth curve, for beads and wires. Clones share the data.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,8 +91,8 @@ impl Curve {
         Curve::new(CurveForm::Expressions(components), from, to)
     }
 
-    /// The cubic spline through points \[m\], closed or open; z = 0 in two dimensions. An open spline goes on straight
-    /// beyond its ends.
+    /// The cubic spline through points \[m\], closed or open; z = 0 in two dimensions. A bead that reaches an end of an
+    /// open spline ends the run: [`StepError::CurveEnds`](crate::StepError::CurveEnds).
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed spline; two neighbours at one place; a number that is not finite.
@@ -92,7 +103,8 @@ impl Curve {
     }
 
     /// Straight pieces from point to point \[m\], closed or open, with arcs of a radius \[m\] at the corners; z = 0 in
-    /// two dimensions. The parameter is the arc length \[m\]. An open polyline goes on straight beyond its ends.
+    /// two dimensions. The parameter is the arc length \[m\]. A bead that reaches an end of an open polyline ends the
+    /// run: [`StepError::CurveEnds`](crate::StepError::CurveEnds).
     ///
     /// # Errors
     /// Fewer than two points, or three of a closed polyline; two neighbours at one place; a corner that folds back by
@@ -143,9 +155,38 @@ impl Curve {
         }
     }
 
-    pub(super) fn foot<N: Number, const D: usize>(&self, x: [N; D]) -> Foot<N, D> {
+    /// s*, and its rate ṡ* for a particle with the velocity v; sought near `near`, where that is known.
+    pub(super) fn parameter<const D: usize>(&self, x: Point<D>, v: Point<D>, near: Option<f64>) -> (f64, f64) {
+        let s = self.shape.foot(x, near);
+        let at = self.shape.at::<D>(s);
+        let [c, c1, c2] = [0, 1, 2].map(|order| std::array::from_fn::<f64, D, _>(|k| at[k][order]));
+        let (square, inner) = (dot(c1, c1), dot(minus(x, c), c2));
+        let rate = dot(c1, v) / (square - inner).max(0.1 * square);
+        (s, if rate.is_finite() { rate } else { 0.0 })
+    }
+
+    /// The end that lies before a parameter, if the curve has one there.
+    pub(super) fn end_passed(&self, s: f64) -> Option<CurveEnd> {
+        let Shape { form, from, to, .. } = &*self.shape;
+        let is_open = match form {
+            CurveForm::Expressions(_) => false,
+            CurveForm::Spline(spline) => !spline.closed(),
+            CurveForm::Polyline(polyline) => !polyline.closed(),
+        };
+        let past = PAST * (to - from);
+        if s.is_nan() {
+            Some(CurveEnd::Undefined)
+        } else if is_open && s < from - past {
+            Some(CurveEnd::First)
+        } else {
+            (is_open && s > to + past).then_some(CurveEnd::Last)
+        }
+    }
+
+    /// The foot of x, sought near `near`, where that is known.
+    pub(super) fn foot<N: Number, const D: usize>(&self, x: [N; D], near: Option<f64>) -> Foot<N, D> {
         let place = x.map(Number::value);
-        let at = self.shape.at::<D>(self.shape.foot(place));
+        let at = self.shape.at::<D>(self.shape.foot(place, near));
         let [c, c1, c2] = [0, 1, 2].map(|order| std::array::from_fn::<f64, D, _>(|k| at[k][order]));
         let square = dot(c1, c1);
         let moving = if square > 0.0 { 1.0 } else { 0.0 };
@@ -184,10 +225,13 @@ impl Shape {
         }
     }
 
-    /// s*.
-    fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
+    /// s*, sought near `near`, where that is known; NaN where the curve has no value on the way.
+    fn foot<const D: usize>(&self, x: Point<D>, near: Option<f64>) -> f64 {
         if let CurveForm::Polyline(polyline) = &self.form {
-            return polyline.foot(x);
+            return polyline.foot(x, near);
+        }
+        if let Some(near) = near {
+            return self.descend(x, near, [f64::NEG_INFINITY, f64::INFINITY]);
         }
         let away = |i: usize| {
             let apart: Point<D> = std::array::from_fn(|k| x[k] - self.samples[i][k]);
@@ -200,17 +244,22 @@ impl Shape {
                 nearest = (i, distance);
             }
         }
-        let span = self.to - self.from;
-        let step = span / SAMPLES as f64;
-        let mut s = self.parameter(nearest.0);
+        let (s, step) = (self.parameter(nearest.0), (self.to - self.from) / SAMPLES as f64);
         // Beyond an end the foot may lie at any distance.
-        let mut low = if nearest.0 == 0 { f64::NEG_INFINITY } else { s - step };
-        let mut high = if nearest.0 == SAMPLES { f64::INFINITY } else { s + step };
+        let low = if nearest.0 == 0 { f64::NEG_INFINITY } else { s - step };
+        let high = if nearest.0 == SAMPLES { f64::INFINITY } else { s + step };
+        self.descend(x, s, [low, high])
+    }
+
+    /// The first minimum of |x − c(s)|² downhill from s, within bounds.
+    fn descend<const D: usize>(&self, x: Point<D>, mut s: f64, [mut low, mut high]: [f64; 2]) -> f64 {
+        let span = self.to - self.from;
         for _ in 0..ITERATIONS {
             let at = self.at::<D>(s);
             let [c, c1, c2] = [0, 1, 2].map(|order| std::array::from_fn::<f64, D, _>(|k| at[k][order]));
             let w = minus(x, c);
-            let (g, steepness) = (dot(w, c1), dot(c1, c1) - dot(w, c2));
+            let square = dot(c1, c1);
+            let (g, steepness) = (dot(w, c1), square - dot(w, c2));
             if g == 0.0 {
                 break;
             }
@@ -221,12 +270,17 @@ impl Shape {
                 high = s;
                 low
             };
-            let newton = if steepness > 0.0 { s + g / steepness } else { s + step.copysign(g) };
+            // c' turns by |c' × c"|/c'·c' for each unit of s.
+            let along = dot(c1, c2);
+            let turning = (square * dot(c2, c2) - along * along).max(0.0).sqrt() / square;
+            let stride = (span / STRIDES).min(TURN / turning);
+            let newton = if steepness > 0.0 { g / steepness } else { stride.copysign(g) };
+            let newton = s + newton.clamp(-stride, stride);
             let inside = (s.min(bound)..=s.max(bound)).contains(&newton);
             let next = if inside { newton } else { 0.5 * (s + bound) };
             // Newton's method squares its error, so after a step of 1e-8 only roundoff is left. NaN ends the search,
             // too.
-            let done = next.is_nan() || (next - s).abs() <= 1e-8 * span;
+            let done = next.is_nan() || (next - s).abs() <= 1e-8 * stride;
             s = next;
             if done {
                 break;

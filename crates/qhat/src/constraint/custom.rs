@@ -143,6 +143,10 @@ impl Holds for Custom {
         self.scale.unwrap_or(extent)
     }
 
+    fn may_jump(&self) -> bool {
+        true
+    }
+
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
         let mut largest = 0.0_f64;
         hessian_blocks(self.C(), &self.particles, motion, &mut |_, _, block: Block<D>| {

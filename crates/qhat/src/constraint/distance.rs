@@ -38,7 +38,7 @@
 //! Source: the seed report, "Constraint Used"; Witkin, Gleicher, Welch, Interactive Dynamics (1990).
 
 use super::{ConstraintError, Formulation, Holds, OnSphere, RowWriter, Softness};
-use crate::allowed::{check_strength, not_negative, positive};
+use crate::allowed::{check_impulse, check_strength, not_negative, positive};
 use crate::driven::Driven;
 use crate::force::{Force, Spring};
 use crate::linalg::block::{diagonal, outer, plus};
@@ -73,6 +73,8 @@ pub struct Distance {
     pub damping: f64,
     /// The tension or thrust at which the rod breaks \[N\].
     pub breaks_at: Option<f64>,
+    /// The impulse of a blow at which the rod breaks \[N·s\].
+    pub breaks_at_impulse: Option<f64>,
     /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods share a force.
     pub stiffness: f64,
 }
@@ -80,8 +82,17 @@ pub struct Distance {
 impl Distance {
     /// A rod of the given length \[m\] in the length form.
     pub fn new(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        let (form, stiffness) = (DistanceForm::Length, 1.0);
-        Distance { a, b, length, form, compliance: 0.0, damping: 0.0, breaks_at: None, stiffness }
+        Distance {
+            a,
+            b,
+            length,
+            form: DistanceForm::Length,
+            compliance: 0.0,
+            damping: 0.0,
+            breaks_at: None,
+            breaks_at_impulse: None,
+            stiffness: 1.0,
+        }
     }
 
     /// A rod whose length is driven \[m\], a number or a function of t: an [`OnSphere`] about the particle `b`. It is
@@ -101,6 +112,11 @@ impl Distance {
     /// The same rod, with the tension or thrust at which it breaks \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Distance { breaks_at: Some(tension), ..self }
+    }
+
+    /// The same rod, with the impulse of a blow \[N·s\] at which it breaks.
+    pub fn breaking_at_impulse(self, impulse: f64) -> Self {
+        Distance { breaks_at_impulse: Some(impulse), ..self }
     }
 
     /// The same rod with the stiffness EA \[N\] by which it shares a force with redundant rods.
@@ -187,6 +203,10 @@ impl Holds for Distance {
         self.breaks_at
     }
 
+    fn breaks_at_impulse(&self) -> Option<f64> {
+        self.breaks_at_impulse
+    }
+
     fn as_force(&self) -> Option<Force> {
         let Distance { a, b, length, compliance, damping, .. } = *self;
         (compliance > 0.0).then(|| Spring { a, b, stiffness: 1.0 / compliance, damping, rest: length }.into())
@@ -251,9 +271,10 @@ impl Holds for Distance {
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
             return Err(ConstraintError::ComplianceInSquaredForm);
         }
-        if self.breaks_at.is_some() && self.compliance > 0.0 {
+        if (self.breaks_at.is_some() || self.breaks_at_impulse.is_some()) && self.compliance > 0.0 {
             return Err(ConstraintError::ComplianceThatBreaks);
         }
+        check_impulse(self.breaks_at_impulse)?;
         Ok(check_strength(self.breaks_at)?)
     }
 }

@@ -141,6 +141,10 @@ impl Holds for ExpressionConstraint {
         self.scale.unwrap_or_else(|| (slope * extent).max(0.5 * bend * extent * extent))
     }
 
+    fn may_jump(&self) -> bool {
+        true
+    }
+
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
         let mut largest = 0.0_f64;
         self.expression.hessian_blocks(motion, &mut |_, _, block: Block<D>| largest = largest.max(size(&block)));

@@ -137,6 +137,14 @@ impl Smooth for Gears {
         Residual { C: within_half_a_turn(sum), C_t: -rate }
     }
 
+    fn may_jump(&self) -> bool {
+        true
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        self.arms.all()
+    }
+
     fn scale(&self, extent: f64) -> f64 {
         let size = |part: &Part| match *part {
             Part::Turn(z) => f64::from(z).abs(),

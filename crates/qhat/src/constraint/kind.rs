@@ -71,6 +71,21 @@ pub(crate) trait Holds {
         None
     }
 
+    /// The impulse in the first row at which the constraint breaks [N·s].
+    fn breaks_at_impulse(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether the gradient may jump, or lose its value, at places that the motion can reach.
+    fn may_jump(&self) -> bool {
+        false
+    }
+
+    /// The ends of the vectors whose directions are in the gradient, if they may shrink to nothing.
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        Vec::new()
+    }
+
     /// The same constraint in the form that belongs to a formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 

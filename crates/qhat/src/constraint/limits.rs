@@ -12,7 +12,7 @@
 //! then the first axis.
 
 use super::{ConstraintError, ContactRows, Formulation, Holds, RowWriter};
-use crate::allowed::{check_restitution, check_strength, not_negative, positive};
+use crate::allowed::{check_impulse, check_restitution, check_strength, not_negative, positive};
 use crate::linalg::block::{diagonal, outer, plus};
 use crate::point::{Motion, Point, dot, first_axis, minus, norm, scaled};
 use crate::space::ParticleId;
@@ -33,6 +33,8 @@ pub struct Limits {
     pub restitution: f64,
     /// The tension or thrust at which the rope or strut breaks \[N\].
     pub breaks_at: Option<f64>,
+    /// The impulse of a jerk or a blow at which it breaks \[N·s\].
+    pub breaks_at_impulse: Option<f64>,
     /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods and ropes share a force.
     pub stiffness: f64,
 }
@@ -40,7 +42,16 @@ pub struct Limits {
 impl Limits {
     /// A rope: slack while shorter than its length \[m\], taut at its length.
     pub fn rope(a: ParticleId, b: ParticleId, length: f64) -> Self {
-        Limits { a, b, shortest: None, longest: Some(length), restitution: 0.0, breaks_at: None, stiffness: 1.0 }
+        Limits {
+            a,
+            b,
+            shortest: None,
+            longest: Some(length),
+            restitution: 0.0,
+            breaks_at: None,
+            breaks_at_impulse: None,
+            stiffness: 1.0,
+        }
     }
 
     /// A loose strut: keeps two particles at least a length \[m\] apart.
@@ -61,6 +72,11 @@ impl Limits {
     /// The same with the tension or thrust that it does not survive \[N\].
     pub fn breaking_at(self, tension: f64) -> Self {
         Limits { breaks_at: Some(tension), ..self }
+    }
+
+    /// The same with the impulse of a jerk or a blow \[N·s\] that it does not survive.
+    pub fn breaking_at_impulse(self, impulse: f64) -> Self {
+        Limits { breaks_at_impulse: Some(impulse), ..self }
     }
 
     /// The same with the stiffness EA \[N\] by which it shares a force with redundant rods and ropes.
@@ -144,6 +160,10 @@ impl Holds for Limits {
         self.breaks_at
     }
 
+    fn breaks_at_impulse(&self) -> Option<f64> {
+        self.breaks_at_impulse
+    }
+
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {
         let length = norm(minus(motion.x(self.a), motion.x(self.b)));
         if length > 0.0 { 1.0 / length } else { 0.0 }
@@ -185,6 +205,7 @@ impl Holds for Limits {
         }
         positive("the stiffness of a rope or strut", self.stiffness)?;
         check_restitution(self.restitution)?;
+        check_impulse(self.breaks_at_impulse)?;
         Ok(check_strength(self.breaks_at)?)
     }
 }

@@ -12,6 +12,7 @@ mod direction;
 mod distance;
 mod error;
 mod expression;
+mod feet;
 mod gears;
 mod jacobian;
 mod kind;
@@ -140,6 +141,15 @@ macro_rules! constraints {
             }
             fn breaks_at(&self) -> Option<f64> {
                 match self { $(Constraint::$kind(constraint) => constraint.breaks_at(),)* }
+            }
+            fn breaks_at_impulse(&self) -> Option<f64> {
+                match self { $(Constraint::$kind(constraint) => constraint.breaks_at_impulse(),)* }
+            }
+            fn may_jump(&self) -> bool {
+                match self { $(Constraint::$kind(constraint) => Holds::may_jump(constraint),)* }
+            }
+            fn arms(&self) -> Vec<[ParticleId; 2]> {
+                match self { $(Constraint::$kind(constraint) => Holds::arms(constraint),)* }
             }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }

@@ -66,6 +66,14 @@ impl Smooth for OnCircle {
         Residual { C, C_t: -dot(n, pd) - rd }
     }
 
+    fn may_jump(&self) -> bool {
+        self.radius.is_driven()
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        self.center.particle().map(|center| [self.particle, center]).into_iter().collect()
+    }
+
     fn scale(&self, _: f64) -> f64 {
         self.radius.value(0.0)
     }

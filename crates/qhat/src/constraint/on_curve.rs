@@ -29,6 +29,14 @@ pub struct OnCurve {
     pub curve: Curve,
 }
 
+/// A particle on a curve whose foot is sought near a parameter.
+#[derive(Clone, Copy)]
+pub(crate) struct Followed<'a> {
+    pub(super) bead: &'a OnCurve,
+    /// Where the foot is expected; `None` where it is not known.
+    pub(super) near: Option<f64>,
+}
+
 impl Smooth for OnCurve {
     fn row_count(&self, dimension: usize) -> usize {
         dimension - 1
@@ -39,8 +47,34 @@ impl Smooth for OnCurve {
     }
 
     fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
+        Followed { bead: self, near: None }.row(row, at, gradient)
+    }
+
+    fn scale(&self, extent: f64) -> f64 {
+        extent
+    }
+
+    fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
+        Ok(self.curve.fits(dimension)?)
+    }
+
+    fn check(&self) -> Result<(), ConstraintError> {
+        Ok(())
+    }
+}
+
+impl Smooth for Followed<'_> {
+    fn row_count(&self, dimension: usize) -> usize {
+        Smooth::row_count(self.bead, dimension)
+    }
+
+    fn particle(&self, i: usize) -> Option<ParticleId> {
+        self.bead.particle(i)
+    }
+
+    fn row<N: Number, const D: usize>(&self, row: usize, at: &At<N, D>, gradient: &mut Gradient<N, D>) -> Residual<N> {
         let zero = N::constant(0.0);
-        let Foot { w, tangent, slope } = self.curve.foot(at.x(0));
+        let Foot { w, tangent, slope } = self.bead.curve.foot(at.x(0), self.near);
         if D == 2 {
             let length = norm(tangent);
             let mut n = [zero; D];
@@ -56,14 +90,14 @@ impl Smooth for OnCurve {
     }
 
     fn scale(&self, extent: f64) -> f64 {
-        extent
+        Smooth::scale(self.bead, extent)
     }
 
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
-        Ok(self.curve.fits(dimension)?)
+        Smooth::fits(self.bead, dimension)
     }
 
     fn check(&self) -> Result<(), ConstraintError> {
-        Ok(())
+        Smooth::check(self.bead)
     }
 }

@@ -71,6 +71,14 @@ impl Smooth for OnEllipse {
         Residual { C: c * (rho - one), C_t: cd * (rho - one) - dot(g, pd) - stretching }
     }
 
+    fn may_jump(&self) -> bool {
+        self.half.iter().any(Driven::is_driven)
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        self.center.particle().map(|center| [self.particle, center]).into_iter().collect()
+    }
+
     fn scale(&self, _: f64) -> f64 {
         (self.half[0].value(0.0) * self.half[1].value(0.0)).sqrt()
     }

@@ -129,10 +129,21 @@ impl Polyline {
         self.end
     }
 
+    /// Whether it returns to its first point.
+    pub(super) fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// A parameter of a closed wire within its length, and the piece there.
+    fn piece(&self, s: f64) -> (f64, usize) {
+        let s = if self.closed { s - self.end * (s / self.end).floor() } else { s };
+        (s, self.pieces.partition_point(|piece| piece.start <= s).saturating_sub(1))
+    }
+
     /// c, c' and c" of each component.
     pub(super) fn at<const D: usize>(&self, s: f64) -> [[f64; 3]; D] {
-        let s = if self.closed { s - self.end * (s / self.end).floor() } else { s };
-        let piece = &self.pieces[self.pieces.partition_point(|piece| piece.start <= s).saturating_sub(1)];
+        let (s, i) = self.piece(s);
+        let piece = &self.pieces[i];
         let u = s - piece.start;
         match &piece.form {
             PolylineForm::Straight { from, along } => std::array::from_fn(|k| [from[k] + along[k] * u, along[k], 0.0]),
@@ -146,18 +157,55 @@ impl Polyline {
         }
     }
 
-    /// s*, the parameter of the point of the wire that is nearest to x.
-    pub(super) fn foot<const D: usize>(&self, x: Point<D>) -> f64 {
+    /// s*: the first minimum of |x − c|² downhill from `near`, or where that is not known the nearest point of the wire.
+    pub(super) fn foot<const D: usize>(&self, x: Point<D>, near: Option<f64>) -> f64 {
+        match near {
+            Some(near) => self.foot_near(x, near),
+            None => self.nearest_foot(x),
+        }
+    }
+
+    fn nearest_foot<const D: usize>(&self, x: Point<D>) -> f64 {
         let (mut nearest, mut foot) = (f64::INFINITY, 0.0);
         for (i, piece) in self.pieces.iter().enumerate() {
-            let low = if i == 0 && !self.closed { f64::NEG_INFINITY } else { 0.0 };
-            let high = if i == self.pieces.len() - 1 && !self.closed { f64::INFINITY } else { piece.length };
+            let [low, high] = self.bounds(i);
             let (u, square) = piece.form.foot(x, low, high);
             if square < nearest {
                 (nearest, foot) = (square, piece.start + u);
             }
         }
         foot
+    }
+
+    /// From piece to piece, towards the end of each at which its own foot lies.
+    fn foot_near<const D: usize>(&self, x: Point<D>, near: f64) -> f64 {
+        let (mut i, count) = (self.piece(near).1, self.pieces.len());
+        let mut forward = None;
+        for _ in 0..=count {
+            let (piece, [low, high]) = (&self.pieces[i], self.bounds(i));
+            let (u, _) = piece.form.foot(x, low, high);
+            let here = piece.start + u;
+            let next = match (u <= low, u >= high) {
+                (false, false) => return here,
+                // A piece without length is passed in the direction of the search.
+                (true, true) => forward.unwrap_or(true),
+                (_, is_high) => is_high,
+            };
+            // The foot on the piece before lies at the same joint.
+            if forward == Some(!next) {
+                return here;
+            }
+            forward = Some(next);
+            i = if next { (i + 1) % count } else { (i + count - 1) % count };
+        }
+        self.nearest_foot(x)
+    }
+
+    /// The bounds of u on a piece. An open wire goes on straight beyond its ends.
+    fn bounds(&self, i: usize) -> [f64; 2] {
+        let low = if i == 0 && !self.closed { f64::NEG_INFINITY } else { 0.0 };
+        let high = if i == self.pieces.len() - 1 && !self.closed { f64::INFINITY } else { self.pieces[i].length };
+        [low, high]
     }
 
     /// The parameters of the corners of a polygon that approximates the wire.
@@ -281,7 +329,7 @@ mod tests {
                 let turn = f64::from(i);
                 let x = [1.5 * libm::sin(turn) + 0.8, 1.5 * libm::cos(1.7 * turn) + 1.2, libm::sin(2.3 * turn)];
                 let away = |s: f64| minus(x, wire.at::<3>(s).map(|[c, _, _]| c));
-                let foot = wire.foot(x);
+                let foot = wire.foot(x, None);
                 let tangent = wire.at::<3>(foot).map(|[_, c1, _]| c1);
                 assert!(dot(away(foot), tangent).abs() < 1e-13, "{closed} {i}");
                 // An open wire is tested for 2 m beyond its ends.

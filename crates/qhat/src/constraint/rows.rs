@@ -4,6 +4,7 @@
 //! particles these are never changes once a System is built. The layout is therefore made once, and an evaluation
 //! writes numbers only.
 
+use super::feet::Feet;
 use super::jacobian::{Jacobian, RowWriter};
 use super::layout::Layout;
 use super::{Constraint, Holds};
@@ -18,6 +19,8 @@ pub(crate) struct Rows {
     /// ∂C/∂t [C/s]; zero where a constraint does not depend on time.
     pub(crate) Ct: Vec<f64>,
     pub(crate) J: Jacobian,
+    /// Where the feet of beads are sought; empty in a system without beads.
+    pub(crate) feet: Feet,
 }
 
 impl Rows {
@@ -29,6 +32,7 @@ impl Rows {
             gamma: vec![0.0; m],
             Ct: vec![0.0; m],
             J: Jacobian::new(layout, dimension, particle_count),
+            feet: Feet::default(),
         }
     }
 
@@ -42,7 +46,10 @@ impl Rows {
             // Large systems are made of rods. For them the match over all kinds would take a fifth more time.
             match constraint.as_rod() {
                 Some(rod) => rod.evaluate(motion, &mut writer),
-                None => constraint.evaluate(motion, &mut writer),
+                None => match writer.rows.feet.bead(constraint, writer.row, motion.t) {
+                    Some(bead) => bead.evaluate(motion, &mut writer),
+                    None => constraint.evaluate(motion, &mut writer),
+                },
             }
         }
         debug_assert_eq!(writer.row, self.C.len());

@@ -48,6 +48,16 @@ pub(crate) trait Smooth: Clone {
         0.0
     }
 
+    /// As [`Holds::may_jump`].
+    fn may_jump(&self) -> bool {
+        false
+    }
+
+    /// As [`Holds::arms`].
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        Vec::new()
+    }
+
     /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
@@ -239,6 +249,14 @@ impl<S: Smooth> Holds for S {
                 });
             }
         });
+    }
+
+    fn may_jump(&self) -> bool {
+        Smooth::may_jump(self)
+    }
+
+    fn arms(&self) -> Vec<[ParticleId; 2]> {
+        Smooth::arms(self)
     }
 
     fn formulated(&self, _: Formulation) -> Self {

@@ -53,6 +53,11 @@ impl Spline {
         self.knots[self.knots.len() - 1]
     }
 
+    /// Whether it returns to its first point.
+    pub(super) fn closed(&self) -> bool {
+        self.closed
+    }
+
     /// Solves for m along axis k.
     fn bend(&mut self, k: usize) {
         let pieces = self.knots.len() - 1;

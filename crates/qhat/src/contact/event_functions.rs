@@ -121,8 +121,9 @@ impl EventFunctions<'_> {
             let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, larger);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
             // A tension that is noise breaks nothing.
-            let holds = broken || system.is_second_order(breakable.constraint);
-            event_functions.push(if holds { f64::INFINITY } else { reserve });
+            let is_noise = system.is_second_order(breakable.constraint);
+            let cannot_break = broken || is_noise || breakable.limit.is_infinite();
+            event_functions.push(if cannot_break { f64::INFINITY } else { reserve });
         }
     }
 }

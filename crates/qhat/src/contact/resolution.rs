@@ -11,7 +11,7 @@ use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
-use crate::point::{Motion, largest};
+use crate::point::{Motion, larger, largest};
 use crate::report::{Event, EventKind, Warning};
 use crate::settings::Feedback;
 use crate::structure::Contacts;
@@ -66,11 +66,13 @@ impl<const D: usize> EventResolution<'_, D> {
         let mut last = 0;
         for round in 0..ROUNDS {
             self.evaluate();
-            let near = self.near(modes, cause);
+            let mut near = self.near(modes, cause);
             let closing = self.closing(modes, &near);
             if !closing.is_empty() {
                 self.collide(modes, &near, &closing, &mut resolved)?;
                 self.evaluate();
+                // Without the links that the impact broke.
+                near = self.near(modes, cause);
             }
             let stopping = cause.filter(|_| round == 0);
             let touching = self.open_separating(modes, near, closing.is_empty(), stopping);
@@ -168,16 +170,64 @@ impl<const D: usize> EventResolution<'_, D> {
         Touching { contact: k, slip, may_stick: may_stick || slip.is_none(), is_rough: !tangents.is_empty() }
     }
 
-    /// The impact of the closing contacts on all that are near.
+    /// The impact of the closing contacts on all that are near. A link whose impulse is above its strength breaks, and
+    /// the impact is taken without it: the one of them that is farthest above it, then the next.
     fn collide(
+        &mut self,
+        modes: &mut Modes,
+        near: &[usize],
+        closing: &[usize],
+        resolved: &mut Resolved,
+    ) -> Result<(), NoConsistentModes> {
+        let before = self.qd.to_vec();
+        loop {
+            let is_whole = |k: &&usize| !modes.is_gone(&self.system.contacts.list[**k]);
+            let [near, closing] = [near, closing].map(|list| list.iter().filter(is_whole).copied().collect::<Vec<_>>());
+            if closing.is_empty() {
+                return Ok(());
+            }
+            let (events, warnings) = (resolved.events.len(), resolved.warnings.len());
+            let lost = self.collide_once(modes, &near, &closing, resolved)?;
+            let Some((breakable, impulse)) = self.broken_by_impulse(modes) else {
+                resolved.lost += lost;
+                return Ok(());
+            };
+            resolved.events.truncate(events);
+            resolved.warnings.truncate(warnings);
+            let constraint = self.system.contacts.breakables[breakable].constraint;
+            resolved.events.push(Event { impulse, ..self.event(constraint, EventKind::Broke) });
+            modes.broken[breakable] = true;
+            self.qd.copy_from_slice(&before);
+            self.evaluate();
+        }
+    }
+
+    /// The link whose impulse is farthest above its strength, with the impulse [N·s].
+    fn broken_by_impulse(&self, modes: &Modes) -> Option<(usize, f64)> {
+        let breakables = self.system.contacts.breakables.iter().zip(&modes.broken).enumerate();
+        let whole = breakables.filter(|(_, (_, broken))| !**broken);
+        let carried = whole.map(|(number, (breakable, _))| {
+            let impulses = breakable.rows.clone().map(|row| self.equation.lambda[row].abs());
+            (number, impulses.fold(0.0, larger), breakable.impulse_limit)
+        });
+        let over = carried.filter(|(_, impulse, limit)| impulse > limit);
+        over.max_by(|(_, a, la), (_, b, lb)| (a / la).total_cmp(&(b / lb)))
+            .map(|(number, impulse, _)| (number, impulse))
+    }
+
+    /// The impact of closing contacts on those that are near, with the links that are whole. Returns the energy lost
+    /// [J].
+    fn collide_once(
         &mut self,
         modes: &Modes,
         near: &[usize],
         closing: &[usize],
         resolved: &mut Resolved,
-    ) -> Result<(), NoConsistentModes> {
+    ) -> Result<f64, NoConsistentModes> {
         let bounce_speed = self.bounce_speed();
-        for &k in closing.iter().filter(|&&k| -self.rate(k) > bounce_speed) {
+        let first = resolved.events.len();
+        let struck: Vec<usize> = closing.iter().copied().filter(|&k| -self.rate(k) > bounce_speed).collect();
+        for &k in &struck {
             let speed = -self.rate(k);
             resolved.events.push(self.event(self.system.contacts.list[k].constraint, EventKind::Impact { speed }));
         }
@@ -188,11 +238,14 @@ impl<const D: usize> EventResolution<'_, D> {
             during.contacts[touching.contact] = touching.closed();
         }
         let EventResolution { equation, system, qd, .. } = self;
-        resolved.lost += Impact::<D> { equation, system, touching: &touching, qd }.collide(&mut during, &bounces)?;
+        let lost = Impact::<D> { equation, system, touching: &touching, qd }.collide(&mut during, &bounces)?;
+        for (event, k) in resolved.events[first..].iter_mut().zip(struck) {
+            event.impulse = self.equation.lambda[self.system.contacts.list[k].normal];
+        }
         if bounces.contains(&true) {
             resolved.warnings.extend(self.shared(near));
         }
-        Ok(())
+        Ok(lost)
     }
 
     /// Two contacts that give back speed and share a particle that moves, both with an impulse.
@@ -295,13 +348,17 @@ impl<const D: usize> EventResolution<'_, D> {
             events.push(self.event(contact.constraint, kind));
         }
         for (number, breakable) in breakables.iter().enumerate() {
-            if after.broken[number] && !before.broken[number] {
+            let is_told = || {
+                let name = &self.system.constraints[breakable.constraint].name;
+                events.iter().any(|event| event.kind == EventKind::Broke && event.constraint == *name)
+            };
+            if after.broken[number] && !before.broken[number] && !is_told() {
                 events.push(self.event(breakable.constraint, EventKind::Broke));
             }
         }
     }
 
     fn event(&self, constraint: usize, kind: EventKind) -> Event {
-        Event { time: self.t, constraint: self.system.constraints[constraint].name.clone(), kind }
+        Event { time: self.t, constraint: self.system.constraints[constraint].name.clone(), kind, impulse: 0.0 }
     }
 }

@@ -57,6 +57,13 @@ pub(super) const FUNCTIONS: [Function; 19] = [
     Function { name: "volume", usage: "volume(a, b, c, d)", arguments: (4, 4), does: Does::Volume },
 ];
 
+/// The function of a name. `log` is another name of `ln`, as most languages write it.
+pub(super) fn function(name: &str) -> Option<&'static Function> {
+    static KNOWN: [Function; 19] = FUNCTIONS;
+    let name = if name == "log" { "ln" } else { name };
+    KNOWN.iter().find(|function| function.name == name)
+}
+
 impl Function {
     /// The number of arguments that it takes, in words.
     fn takes(&self) -> String {

@@ -2,7 +2,7 @@
 //! its place.
 
 use super::error::{ExpressionError, quoted};
-use super::functions::FUNCTIONS;
+use super::functions::{FUNCTIONS, function};
 use super::operation::Operation;
 use super::scope::Scope;
 use super::syntax::{Operator, Syntax, Tree};
@@ -227,7 +227,7 @@ impl<'a> Lowering<'a> {
 
     fn call(&mut self, name: &Range<usize>, span: &Range<usize>, arguments: &[Argument]) -> Lowered<Value> {
         let word = &self.text[name.clone()];
-        if let Some(function) = FUNCTIONS.iter().find(|function| function.name == word) {
+        if let Some(function) = function(word) {
             return function.call(self, span, arguments);
         }
         let error = ExpressionError::new(name.clone(), format!("there is no function {}", quoted(word)));

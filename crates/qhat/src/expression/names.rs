@@ -2,7 +2,7 @@
 
 use super::MAX_NAMES;
 use super::error::{ExpressionError, quoted};
-use super::functions::FUNCTIONS;
+use super::functions::function;
 use super::lower::{Lowered, Lowering, Value, refused};
 use super::scope::{CONSTANTS, Purpose};
 use super::tape::Instruction;
@@ -129,7 +129,7 @@ impl<'a> Lowering<'a> {
         let what = if member.is_some() { "particle" } else { "name" };
         let error =
             ExpressionError::new(span.start..span.start + base.len(), format!("there is no {what} {}", quoted(base)));
-        if let Some(function) = FUNCTIONS.iter().find(|function| function.name == base) {
+        if let Some(function) = function(base) {
             let message = format!("`{base}` is a function: its arguments are missing");
             return ExpressionError { message, ..error }.with_help(format!("write `{}`", function.usage));
         }

@@ -1,7 +1,7 @@
 //! Scope: the names that an expression may use, and their meaning.
 
 use super::error::ParameterError;
-use super::functions::FUNCTIONS;
+use super::functions::function;
 use super::token::is_name;
 use crate::space::{Dimension, ParticleId};
 
@@ -61,7 +61,7 @@ pub fn check_parameter(name: &str, value: f64) -> Result<(), ParameterError> {
     if CONSTANTS.iter().any(|(constant, _)| *constant == name) || name == "t" {
         return Err(ParameterError::NameTaken { name: name_of() });
     }
-    if FUNCTIONS.iter().any(|function| function.name == name) {
+    if function(name).is_some() {
         return Err(ParameterError::Function { name: name_of() });
     }
     if !value.is_finite() {

@@ -42,7 +42,7 @@ pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
             Ok((report, true)) => return Ok(StepReport { integrator: Integrator::Dop853, ..report }),
             Ok((partly, false)) => report = partly,
             // Constraints that substeps cannot meet may be met at the end of a step.
-            Err(StepError::NotSatisfied { .. }) => {}
+            Err(error) if error.is_unmet() => {}
             Err(error) => return Err(error),
         }
         state.carry = None;

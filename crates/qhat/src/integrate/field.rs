@@ -4,11 +4,12 @@
 //! side by side, or the user's order filled up with zeros. The method adds and scales blocks without knowing which.
 
 use super::Workspace;
+use super::edges::Passage;
 use crate::chains::{Chains, Projected};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
-use crate::multiplier::APPROACH;
+use crate::multiplier::{APPROACH, Equation};
 use crate::point::{Motion, largest};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
@@ -68,6 +69,14 @@ pub(super) trait Field {
         0.0
     }
 
+    /// Whether the substep from (q, q̇) at `from` to the motion projected last at `to` passes an edge.
+    fn passes_an_edge(&self, _q: &[F8], _qd: &[F8], _from: f64, _to: f64) -> bool {
+        false
+    }
+
+    /// Moves the feet of beads on to the motion projected last, at the time t.
+    fn follow(&mut self, _t: f64, _feet: &mut Vec<f64>) {}
+
     /// Gives up the motion projected last: the next call of `accelerate` is at the motion before it.
     fn turn_back(&mut self);
 
@@ -82,6 +91,23 @@ pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) feedback: Feedback,
     /// Whether the factor at hand is that of A at the next call of `accelerate`.
     pub(super) is_factored: bool,
+    /// J at the start of the substep, in a system with rows whose gradient may jump.
+    pub(super) before: Vec<f64>,
+}
+
+impl<'a, const D: usize> GeneralField<'a, D> {
+    /// At a motion where the rows of the workspace have been evaluated.
+    pub(super) fn new(system: &'a System, workspace: &'a mut Workspace, feedback: Feedback, is_factored: bool) -> Self {
+        let mut field = GeneralField { system, workspace, feedback, is_factored, before: Vec::new() };
+        field.note_gradients();
+        field
+    }
+
+    fn note_gradients(&mut self) {
+        if !self.system.jumpy.is_empty() {
+            self.before.clone_from(&self.workspace.equation.rows.J.blocks);
+        }
+    }
 }
 
 pub(super) fn pack(flat: &[f64], blocks: &mut [F8]) {
@@ -200,6 +226,26 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         self.is_factored = false;
         let next = equation.margin::<D>(self.system).unwrap_or(0.0);
         (next < here).then(|| ahead * here / (here - next))
+    }
+
+    fn follow(&mut self, t: f64, feet: &mut Vec<f64>) {
+        let Workspace { equation, q, qd, .. } = &mut *self.workspace;
+        equation.follow_feet(self.system, Motion::<D> { q, qd, t }, feet);
+        self.note_gradients();
+    }
+
+    fn passes_an_edge(&self, q: &[F8], qd: &[F8], from: f64, to: f64) -> bool {
+        let (system, workspace) = (self.system, &*self.workspace);
+        if system.jumpy.is_empty() && system.bead_places.is_empty() {
+            return false;
+        }
+        let [mut start_q, mut start_qd] = [&workspace.q, &workspace.qd].map(|numbers| vec![0.0; numbers.len()]);
+        unpack(q, &mut start_q);
+        unpack(qd, &mut start_qd);
+        let from = Motion::<D> { q: &start_q, qd: &start_qd, t: from };
+        let to = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: to };
+        let Equation { rows, inactive, .. } = &workspace.equation;
+        Passage { system, rows, inactive, before: &self.before, from, to }.is_barred()
     }
 
     fn turn_back(&mut self) {

@@ -15,7 +15,9 @@
 
 mod adaptive;
 mod auto;
+mod edges;
 mod events;
+mod failure;
 mod field;
 mod fixed;
 mod frame;
@@ -40,6 +42,7 @@ use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
 use adaptive::{dop853, dopri5, pair_frame};
+use failure::{at_an_edge, undecided, without_length};
 use frame::Frame;
 
 /// Advances a state by one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
@@ -121,6 +124,10 @@ pub(crate) fn check_finds_events(system: &System, settings: &Settings) -> Result
 pub fn check_start(system: &System, state: &State, settings: &Settings) -> Result<(), StepError> {
     check_finds_events(system, settings)?;
     check_energy(system, state)?;
+    let lost = in_dimension!(system.dimension, D => without_length::<D>(system, state.t, &state.q));
+    if let Some(error) = lost {
+        return Err(error);
+    }
     let violation = in_dimension!(system.dimension, D => deepest::<D>(system, state, settings.constraint_tolerance));
     match violation {
         Some((place, depth)) => {
@@ -153,6 +160,11 @@ pub fn project(
     workspace.equation.solver.memory.forget();
     in_dimension!(system.dimension, D => {
         let projection = projection::project::<D>(system, state, settings, workspace)?;
+        // A start on an edge, and one from which no motion follows.
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        if let Some(error) = at_an_edge(system, state, motion).or_else(|| undecided::<D>(system, state, workspace)) {
+            return Err(error);
+        }
         if !system.contacts.list.is_empty() {
             close::<D>(system, state, settings, &mut workspace.equation);
         }

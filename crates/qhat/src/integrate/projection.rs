@@ -11,6 +11,7 @@
 //! them, or where the start is too far away.
 
 use super::Workspace;
+use super::failure::{not_satisfied, unmet_rate};
 use crate::contact::{NearestStart, TOUCH_DISTANCE};
 use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
@@ -27,6 +28,14 @@ const MAX_ITERATIONS: usize = 60;
 
 /// Halvings of one Newton step.
 const MAX_HALVINGS: usize = 12;
+
+/// Part of the largest |Ċ| before a projection of velocities that it may leave: an A that is nearly singular leaves 1e-6
+/// of it.
+const UNMET: f64 = 1e-3;
+
+/// |Ċ|, relative to the speed of the fastest particle over the extent, that roundoff of an A that is nearly singular may
+/// leave.
+const ROUGH: f64 = 1e-6;
 
 /// |Ċ|, relative to the speed of the fastest particle, below which it is roundoff.
 const CONSISTENT_RATE: f64 = 1e-13;
@@ -47,13 +56,17 @@ pub(super) fn project<const D: usize>(
     if !system.contacts.list.is_empty() {
         iterations += projector.contacts(state)?;
     }
-    projector.velocities();
+    projector.velocities()?;
     if !system.contacts.list.is_empty() {
         projector.approaches(state)?;
     }
+    let (moved, velocity_changed) = (farthest::<D>(q, &state.q), farthest::<D>(qd, &state.qd));
+    let fastest = farthest::<D>(qd, &vec![0.0; qd.len()]);
     let report = Projection {
-        moved: farthest::<D>(q, &state.q),
-        velocity_changed: farthest::<D>(qd, &state.qd),
+        moved,
+        velocity_changed,
+        is_moved: moved > settings.constraint_tolerance * system.extent,
+        is_turned: velocity_changed > settings.tolerance * fastest,
         residual_before,
         iterations,
     };
@@ -62,6 +75,8 @@ pub(super) fn project<const D: usize>(
         state.qd.copy_from_slice(qd);
         state.carry = None;
     }
+    let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+    workspace.equation.follow_feet(system, motion, &mut state.feet);
     Ok(report)
 }
 
@@ -99,9 +114,7 @@ impl<const D: usize> Projector<'_, D> {
                 return Ok((before, iterations));
             }
         }
-        let (row, _) = worst_row(system, &self.equation.rows.C);
-        let residual = self.equation.rows.C.get(row).copied().unwrap_or(0.0);
-        Err(StepError::NotSatisfied { time: self.t, row: system.row_names[row].clone(), residual })
+        Err(not_satisfied(system, self.t, &self.equation.rows))
     }
 
     /// Newton's method on C = 0 from q; the number of its iterations if it gets there, else q is the nearest that it
@@ -192,7 +205,10 @@ impl<const D: usize> Projector<'_, D> {
     }
 
     /// Takes Ċ out of q̇, unless it is roundoff.
-    fn velocities(&mut self) {
+    ///
+    /// # Errors
+    /// A row whose Ċ no velocities change: a drive of a fixed particle, or drives that contradict each other.
+    fn velocities(&mut self) -> Result<(), StepError> {
         self.constrain();
         let Projector { system, equation, qd, .. } = self;
         let fastest = (0..system.particle_count()).map(|i| block::<D>(qd, ParticleId(i))).map(|v| dot(v, v));
@@ -204,7 +220,14 @@ impl<const D: usize> Projector<'_, D> {
             let mut nu = vec![0.0; equation.rows.Cd.len()];
             equation.solver.solve(&system.matrix, &equation.rows.Cd, &mut nu);
             equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, qd); // q̇ − W Jᵀ A⁻¹ Ċ
+            self.constrain();
+            let allowed = (UNMET * rate).max(ROUGH * fastest / self.system.extent);
+            return match unmet_rate(self.system, self.t, &self.equation.rows, allowed) {
+                Some(error) => Err(error),
+                None => Ok(()),
+            };
         }
+        Ok(())
     }
 
     fn constrain(&mut self) {

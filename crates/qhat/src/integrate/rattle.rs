@@ -20,11 +20,13 @@
 use super::Workspace;
 use super::adaptive::control::RowSums;
 use super::adaptive::{self, Attempt, Outcome, Stepper, Substeps, dopri5, pair_frame};
+use super::edges::Passage;
 use super::frame::Frame;
 use crate::constraint::Jacobian;
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::error::StepError;
+use crate::multiplier::Equation;
 use crate::point::{Motion, largest};
 use crate::report::{StepReport, Warning};
 use crate::settings::Integrator;
@@ -101,7 +103,7 @@ pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
             frame.workspace.note_factored(state);
             Ok(substeps.finish(frame, state, Some(lambda)))
         }
-        Err(StepError::NotSatisfied { .. }) => {
+        Err(error) if error.is_unmet() => {
             let mut report = substeps.finish(frame, state, None);
             report.warn(Warning::HandedOver { time: state.t });
             state.carry = None;
@@ -132,6 +134,12 @@ impl<const D: usize> Stepper for RattleStepper<'_, '_, D> {
             return Outcome::NotMet;
         };
         let Frame { system, workspace, .. } = &*self.frame;
+        let from = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        let to = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end };
+        let (Equation { rows, inactive, .. }, before) = (&workspace.equation, &workspace.rattle.J.blocks);
+        if (Passage { system, rows, inactive, before, from, to }).is_barred() {
+            return Outcome::NotMet;
+        }
         let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
         let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });
         // μ/h is the impulse where the substep begins, ν where it ends.
@@ -147,6 +155,8 @@ impl<const D: usize> Stepper for RattleStepper<'_, '_, D> {
         let Frame { system, workspace, .. } = &mut *self.frame;
         std::mem::swap(&mut state.q, &mut workspace.q);
         std::mem::swap(&mut state.qd, &mut workspace.qd);
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t + h };
+        workspace.equation.follow_feet(system, motion, &mut state.feet);
         drift::<D>(system, &workspace.equation.rows, &workspace.equation.inactive, &state.q)
     }
 

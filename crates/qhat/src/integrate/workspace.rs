@@ -6,6 +6,7 @@ use super::watch::TensionWatch;
 use super::{implicit, rattle};
 use crate::chains::Chains;
 use crate::multiplier::Equation;
+use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
 
@@ -52,9 +53,10 @@ impl Workspace {
         &self.equation
     }
 
-    /// Takes the active rows from the modes of a state, and the rows that follow from others. A factor of A without
-    /// other rows is forgotten.
+    /// Takes the active rows from the modes of a state, the feet of beads, and the rows that follow from others. A factor
+    /// of A without other rows is forgotten.
     pub(crate) fn set_modes(&mut self, system: &System, state: &State) {
+        in_dimension!(system.dimension, D => self.equation.place_feet::<D>(system, state));
         if state.rank.is_none() || state.rank != self.equation.rank {
             self.equation.rank.clone_from(&state.rank);
             self.equation.solver.memory.forget();
@@ -64,9 +66,10 @@ impl Workspace {
         }
     }
 
-    /// Whether the factor at hand is that of A at the state, under the active rows at hand.
+    /// Whether the factor at hand is that of A at the state, under the active rows at hand. With beads it is not known:
+    /// a foot that was sought from another place differs in its last bits.
     pub(super) fn is_factored_at(&self, state: &State) -> bool {
-        self.equation.solver.memory.is_of(state, &self.equation.inactive)
+        self.equation.rows.feet.is_empty() && self.equation.solver.memory.is_of(state, &self.equation.inactive)
     }
 
     /// Notes that the factor at hand is that of A at the state, under the active rows at hand.

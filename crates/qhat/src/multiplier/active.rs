@@ -6,6 +6,7 @@
 use super::{Equation, Sliding};
 use crate::modes::{Mode, Modes};
 use crate::point::Motion;
+use crate::state::State;
 use crate::system::System;
 
 impl Equation {
@@ -18,6 +19,23 @@ impl Equation {
                 let (normal, tangents, friction) = (contact.normal, contact.tangents.clone(), contact.friction);
                 self.sliding.push(Sliding { contact: k, normal, tangents, friction, slip });
             }
+        }
+    }
+
+    /// Takes the feet of beads from a state.
+    pub(crate) fn place_feet<const D: usize>(&mut self, system: &System, state: &State) {
+        if !system.bead_places.is_empty() {
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+            self.rows.feet.place(&system.beads(), motion, &state.feet);
+        }
+    }
+
+    /// Moves the feet of beads on to a motion that was kept, and writes them to the state.
+    pub(crate) fn follow_feet<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>, feet: &mut Vec<f64>) {
+        if !system.bead_places.is_empty() {
+            self.rows.feet.follow(&system.beads(), motion);
+            feet.clear();
+            feet.extend_from_slice(self.rows.feet.parameters());
         }
     }
 

@@ -58,6 +58,8 @@ pub struct Event {
     pub constraint: String,
     /// The kind of the event.
     pub kind: EventKind,
+    /// The impulse along the normal of an impact, or the impulse that broke the link \[N·s\]; 0 for all other events.
+    pub impulse: f64,
 }
 
 /// The kind of an event of a constraint.
@@ -204,6 +206,12 @@ pub struct Projection {
     pub moved: f64,
     /// The largest change of a particle's velocity [m/s]; 0 if it was consistent.
     pub velocity_changed: f64,
+    /// Whether that move is more than [`Settings::constraint_tolerance`](crate::Settings::constraint_tolerance) of the
+    /// extent explains: then the start is not the one that was asked for.
+    pub is_moved: bool,
+    /// Whether that change is more than [`Settings::tolerance`](crate::Settings::tolerance) of the fastest velocity
+    /// explains, the part of it by which every substep may be off.
+    pub is_turned: bool,
     /// max |C| before \[C\].
     pub residual_before: f64,
     /// Newton iterations on C(q) = 0.

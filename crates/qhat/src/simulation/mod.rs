@@ -10,7 +10,7 @@ use crate::error::StepError;
 use crate::integrate::{Workspace, check_energy, check_start, project, step_for};
 use crate::multiplier::{Freedom, freedom, second_order};
 use crate::report::{Projection, StepReport, WarningLog};
-use crate::settings::{Settings, SettingsError};
+use crate::settings::Settings;
 use crate::state::State;
 use crate::structure::FlatClique;
 use crate::system::System;
@@ -84,11 +84,11 @@ impl Simulation {
     /// Advances by a duration \[s\]: one frame with an adaptive integrator, steps of h with another.
     ///
     /// # Errors
-    /// [`SettingsError::FrameNotMultiple`] if steps of h do not fill the duration; else as [`Simulation::step`].
+    /// [`SettingsError::FrameNotMultiple`](crate::SettingsError::FrameNotMultiple) if steps of h do not fill the duration;
+    /// else as [`Simulation::step`].
     pub fn advance(&mut self, duration: f64) -> Result<StepReport, StepError> {
         let is_adaptive = self.settings.integrator.is_adaptive();
-        let (steps, h) =
-            if is_adaptive { (1, duration) } else { (steps_in(duration, self.settings.h)?, self.settings.h) };
+        let (steps, h) = if is_adaptive { (1, duration) } else { (self.settings.steps_in(duration)?, self.settings.h) };
         let mut report = StepReport::default();
         let outcome = (0..steps).try_for_each(|_| self.step_by(h).map(|step| report.absorb(step)));
         self.log.note(&report.warnings, self.state.time());
@@ -166,18 +166,5 @@ impl Simulation {
     /// times of the first and the last of them.
     pub fn warnings(&self) -> &WarningLog {
         &self.log
-    }
-}
-
-/// Number of steps of h in a frame.
-///
-/// # Errors
-/// If they do not fill it, to a billionth of a step (a frame is a quotient of two numbers a user typed).
-fn steps_in(frame: f64, h: f64) -> Result<usize, SettingsError> {
-    let steps = (frame / h).round();
-    if steps >= 1.0 && (frame / h - steps).abs() <= 1e-9 * steps {
-        Ok(steps as usize)
-    } else {
-        Err(SettingsError::FrameNotMultiple { frame, h })
     }
 }

@@ -27,6 +27,8 @@ pub(crate) struct Breakable {
     pub(crate) rows: Range<usize>,
     /// The tension at which it breaks [N].
     pub(crate) limit: f64,
+    /// The impulse at which it breaks [N·s].
+    pub(crate) impulse_limit: f64,
 }
 
 /// The contacts and the breakable constraints of a system.
@@ -41,15 +43,19 @@ impl Contacts {
         let mut contacts = Contacts::default();
         for (place, named) in constraints.iter().enumerate() {
             let NamedConstraint { constraint, first_row, .. } = named;
-            let breakable = constraint.breaks_at().map(|_| contacts.breakables.len());
+            let limits = [constraint.breaks_at(), constraint.breaks_at_impulse()];
+            let may_break = limits.iter().any(Option::is_some);
+            let breakable = may_break.then_some(contacts.breakables.len());
             for rows in constraint.contacts(dimension) {
                 let normal = first_row + rows.normal;
                 let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
                 let (restitution, friction) = (rows.restitution, rows.friction);
                 contacts.list.push(Contact { constraint: place, normal, tangents, restitution, friction, breakable });
             }
-            if let Some(limit) = constraint.breaks_at() {
-                contacts.breakables.push(Breakable { constraint: place, rows: named.rows(dimension), limit });
+            if may_break {
+                let rows = named.rows(dimension);
+                let [limit, impulse_limit] = limits.map(|limit| limit.unwrap_or(f64::INFINITY));
+                contacts.breakables.push(Breakable { constraint: place, rows, limit, impulse_limit });
             }
         }
         contacts

@@ -172,6 +172,8 @@ impl SystemBuilder {
             contacts: Contacts::default(),
             second_order: Vec::new(),
             second_order_rods: Vec::new(),
+            jumpy: Vec::new(),
+            bead_places: Vec::new(),
         };
         system.set_constraints(self.constraints.clone());
         let plan = system.plan_matrix();

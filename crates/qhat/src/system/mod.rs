@@ -11,7 +11,7 @@ pub(crate) use builder::check_force;
 pub use error::{BuildError, ParticleError};
 pub use particle::Particle;
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, Rows, Softness};
+use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, OnCurve, Rows, Softness};
 use crate::force::{Acts, Force};
 use crate::linalg::Component;
 use crate::point::Motion;
@@ -48,6 +48,10 @@ pub struct System {
     pub(crate) second_order: Vec<FlatClique>,
     /// The rods of these cliques, ascending.
     second_order_rods: Vec<ConstraintId>,
+    /// The constraints whose gradient may jump, by their places.
+    pub(crate) jumpy: Vec<usize>,
+    /// The beads on curves, by their places among the constraints.
+    pub(crate) bead_places: Vec<usize>,
 }
 
 impl System {
@@ -240,8 +244,34 @@ impl System {
         mass
     }
 
+    /// The beads on curves, each with its first row.
+    pub(crate) fn beads(&self) -> Vec<(usize, &OnCurve)> {
+        let beads = self.bead_places.iter().map(|&place| &self.constraints[place]);
+        let beads = beads.filter_map(|named| match &named.constraint {
+            Constraint::OnCurve(bead) => Some((named.first_row, bead)),
+            _ => None,
+        });
+        beads.collect()
+    }
+
     pub(crate) fn empty_rows(&self) -> Rows {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
+    }
+
+    /// The name of the first particle that can move, or of the first.
+    pub(crate) fn first_moving(&self) -> String {
+        let particles = self.particle_names.iter().zip(&self.inverse_mass);
+        let moving = particles.clone().find(|&(_, &w)| w > 0.0).or(particles.clone().next());
+        moving.map(|(name, _)| name.clone()).unwrap_or_default()
+    }
+
+    /// The rows evaluated at a state.
+    pub(crate) fn rows_at<const D: usize>(&self, state: &State) -> Rows {
+        let mut rows = self.empty_rows();
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        rows.feet.place(&self.beads(), motion, &state.feet);
+        self.evaluate_rows(motion, &mut rows);
+        rows
     }
 
     /// C, Ċ, γ, C_t and J of every row at one motion.
@@ -300,6 +330,11 @@ impl System {
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
         self.contacts = Contacts::new(&self.constraints, dimension);
+        let constraints = self.constraints.iter().enumerate();
+        self.jumpy =
+            constraints.clone().filter(|(_, named)| named.constraint.may_jump()).map(|(place, _)| place).collect();
+        let beads = constraints.filter(|(_, named)| matches!(named.constraint, Constraint::OnCurve(_)));
+        self.bead_places = beads.map(|(place, _)| place).collect();
         self.chains = ChainPlan::new(&self.constraints, &self.inverse_mass);
     }
 

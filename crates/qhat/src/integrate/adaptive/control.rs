@@ -54,7 +54,10 @@ impl RowSums {
             // As in the evaluation of rows: rods need no call.
             let curvature = match named.constraint.as_rod() {
                 Some(rod) => rod.curvature(motion),
-                None => named.constraint.curvature(motion),
+                None => match equation.rows.feet.bead(&named.constraint, named.first_row, motion.t) {
+                    Some(bead) => bead.curvature(motion),
+                    None => named.constraint.curvature(motion),
+                },
             };
             let stiffness = sum * curvature * particles.len() as f64;
             for &particle in &system.layout.particle[particles] {

@@ -91,8 +91,9 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
             return Outcome::Refused(Refusal::Balance);
         }
         self.stages.remember();
-        let Stages { next_q, next_qd, .. } = self.stages;
+        let Stages { q, qd, next_q, next_qd, .. } = self.stages;
         match self.field.project(next_q, next_qd, end, self.settings) {
+            Projected::Met(_) if self.field.passes_an_edge(q, qd, state.t, end) => Outcome::NotMet,
             // Rods that hold only to second order stop a motion across them as a blow would.
             Projected::Met(_) if self.system.second_order.is_empty() && !accepts_move(self.moved(h), self.settings) => {
                 self.stages.recall();
@@ -107,8 +108,9 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         }
     }
 
-    fn keep(&mut self, _: &mut State, _: f64) -> Drift {
+    fn keep(&mut self, state: &mut State, h: f64) -> Drift {
         self.stages.accept();
+        self.field.follow(state.t + h, &mut state.feet);
         self.field.drift(&self.stages.q, &self.stages.qd)
     }
 

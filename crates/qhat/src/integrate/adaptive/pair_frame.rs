@@ -99,7 +99,7 @@ impl PairFrame<'_, '_> {
         let Frame { system, settings, length, ref mut workspace } = **frame;
         workspace.equation.solver.memory.forget();
         let mut stages = std::mem::take(&mut workspace.stages);
-        let field = GeneralField::<D> { system, workspace, feedback: Feedback::NONE, is_factored: true };
+        let field = GeneralField::<D>::new(system, workspace, Feedback::NONE, true);
         let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages };
         stepper.begin(state);
         let end = if system.contacts.is_empty() {

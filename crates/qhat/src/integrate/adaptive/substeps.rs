@@ -7,6 +7,7 @@ use crate::drift::{Drift, attainable, worst_row};
 use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
+use crate::integrate::failure::{at_an_edge, not_satisfied, without_length};
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
 use crate::multiplier::APPROACH;
@@ -229,18 +230,23 @@ impl<'a> Substeps<'a> {
         Ok(())
     }
 
-    /// The error after the shortest substep was not kept: it names the particle of the tried motion that is not finite,
-    /// the row with the largest residual, or where all rows are met the particle with the largest acceleration.
+    /// The error after the shortest substep was not kept: it names the edge that was passed, the particle of the tried
+    /// motion that is not finite, the row with the largest residual, or where all rows are met the particle with the
+    /// largest acceleration.
     fn failure(&self, method: &impl Stepper, state: &State, end: f64, refusal: Option<Refusal>) -> StepError {
         let mut tried = state.clone();
         method.write_tried(&mut tried);
         let (system, time) = (self.system, state.t);
         in_dimension!(system.dimension, D => {
+            let motion = Motion::<D> { q: &tried.q, qd: &tried.qd, t: end };
+            if let Some(error) = at_an_edge(system, state, motion).or_else(|| without_length::<D>(system, time, &state.q)) {
+                return error;
+            }
             if let Err(error) = check_finite::<D>(system, time, &tried.q, &tried.qd) {
                 return error;
             }
-            let mut rows = system.empty_rows();
-            system.evaluate_rows(Motion::<D> { q: &tried.q, qd: &tried.qd, t: end }, &mut rows);
+            let mut rows = system.rows_at::<D>(state);
+            system.evaluate_rows(motion, &mut rows);
             let (worst, off) = worst_row(system, &rows.C);
             let is_off = off > attainable(system, self.settings, largest(&tried.q));
             match refusal {
@@ -249,15 +255,12 @@ impl<'a> Substeps<'a> {
                     let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
                     return StepError::Jumps { time, row, residual };
                 }
-                None if is_off && off.is_finite() => {
-                    let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
-                    return StepError::NotSatisfied { time, row, residual };
-                }
+                None if is_off && off.is_finite() => return not_satisfied(system, time, &rows),
                 _ => {}
             }
             // Sums of finite numbers may overflow; then no particle is to blame more than another.
-            let first = || system.particle_names.first().cloned().unwrap_or_default();
-            self.runaway(state, 0.0).unwrap_or_else(|| StepError::NotFinite { time, particle: first() })
+            let first = || StepError::NotFinite { time, particle: system.first_moving() };
+            self.runaway(state, 0.0).unwrap_or_else(first)
         })
     }
 

@@ -137,6 +137,7 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         self.events.append(&mut resolved.events);
         self.warnings.append(&mut resolved.warnings);
         // The start of the next substep. The resolution evaluated all rows; `constrain` masks the inactive ones.
+        self.run.field.follow(t, &mut state.feet);
         let Workspace { equation, q, qd, .. } = &mut *self.run.field.workspace;
         self.at_start.Cd.clone_from(&equation.rows.Cd);
         self.at_start.lambda.clone_from(&equation.lambda);

@@ -5,6 +5,7 @@ pub(crate) mod rk4;
 pub(crate) mod symplectic_euler;
 
 use super::check_finite;
+use super::failure::at_an_edge;
 use super::frame::Frame;
 use crate::drift::{Drift, drift};
 use crate::energy;
@@ -35,13 +36,20 @@ pub(crate) fn run<const D: usize>(
     method: FixedStep,
 ) -> Result<StepReport, StepError> {
     let factorizations = frame.factorizations();
+    frame.workspace.set_modes(frame.system, state);
     let work = method(frame, state);
     let warnings = frame.workspace.equation.warnings(frame.system);
     frame.workspace.equation.solver.memory.forget();
     let drift = examine::<D>(frame, state.t)?;
+    let tried = Motion::<D> { q: &frame.workspace.q, qd: &frame.workspace.qd, t: state.t + frame.length };
+    if let Some(error) = at_an_edge(frame.system, state, tried) {
+        return Err(error);
+    }
     std::mem::swap(&mut state.q, &mut frame.workspace.q);
     std::mem::swap(&mut state.qd, &mut frame.workspace.qd);
     state.t += frame.length;
+    let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+    frame.workspace.equation.follow_feet(frame.system, motion, &mut state.feet);
     state.work.dissipation += work.dissipation;
     state.work.stabilization += work.stabilization;
     state.work.drives += work.drives;

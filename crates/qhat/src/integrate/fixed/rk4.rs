@@ -18,7 +18,7 @@ pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> Step
     workspace.set_modes(system, state);
     let is_factored = system.feedback.diagonal_drag == 0.0 && workspace.is_factored_at(state);
     let mut stages = std::mem::take(&mut workspace.stages);
-    let mut field = GeneralField::<D> { system, workspace, feedback: system.feedback, is_factored };
+    let mut field = GeneralField::<D>::new(system, workspace, system.feedback, is_factored);
     stages.resize(field.blocks());
     field.begin(state, &mut stages.q, &mut stages.qd);
     // The general field always has an answer.

@@ -25,6 +25,7 @@ mod velocities;
 pub(crate) use newton::Base;
 
 use super::check_finite;
+use super::failure::{at_an_edge, not_satisfied, without_length};
 use super::frame::Frame;
 use crate::drift::{attainable, drift};
 use crate::energy;
@@ -104,6 +105,7 @@ pub(crate) fn frame<const D: usize>(
         state.carry =
             Some(Carry { lambda, substep: length, steady, is_nearly_singular, previous: None, drives, resting: 0 });
     }
+    frame.workspace.set_modes(system, state);
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
     let outcome = ImplicitStepper::<D> { formula, frame, scratch: &mut scratch }.run(state);
@@ -131,14 +133,18 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             let left = budget - report.iterations.min(budget);
             let ending = self.attempt(state, h, left);
             report.iterations += ending.iterations;
-            if !ending.has_converged && report.iterations < budget {
+            let edge = self.edge(state).filter(|_| ending.has_converged);
+            if (!ending.has_converged || edge.is_some()) && report.iterations < budget {
                 report.rejected += 1;
                 parts /= 2;
                 if parts == 0 {
                     state.carry = None;
-                    return Err(self.failure(state, &ending));
+                    return Err(edge.unwrap_or_else(|| self.failure(state, &ending)));
                 }
                 continue;
+            }
+            if let Some(error) = edge {
+                return Err(error);
             }
             if !ending.has_converged {
                 report.warn(Warning::BudgetSpent {
@@ -216,6 +222,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         state.work.dissipation += h * mean(before, after);
         std::mem::swap(&mut state.q, &mut workspace.q);
         std::mem::swap(&mut state.qd, &mut workspace.qd);
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: base.end };
+        workspace.equation.follow_feet(system, motion, &mut state.feet);
         if let Some(carry) = &mut state.carry {
             let scale = base.h_e * base.h_e;
             for (multiplier, mu) in carry.lambda.iter_mut().zip(&newton.mu) {
@@ -234,23 +242,32 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// The error after the shortest step did not converge: the worst row, or where all rows are met the particle with
-    /// the largest acceleration.
+    /// The error after the shortest step did not converge: the culprit of a gradient that is lost, the worst row, or where
+    /// all rows are met the particle with the largest acceleration.
     fn failure(&self, state: &State, ending: &Ending) -> StepError {
-        let (system, time) = (self.frame.system, state.t);
-        let within = attainable(system, self.frame.settings, largest(&self.frame.workspace.q));
-        if let Some(&residual) = self.frame.workspace.equation.rows.C.get(ending.miss.row)
-            && exceeds(ending.miss.relative, within)
-        {
-            return StepError::NotSatisfied { time, row: system.row_names[ending.miss.row].clone(), residual };
+        let (system, time, workspace) = (self.frame.system, state.t, &*self.frame.workspace);
+        if let Some(error) = self.edge(state).or_else(|| without_length::<D>(system, time, &state.q)) {
+            return error;
+        }
+        let rows = &workspace.equation.rows;
+        let within = attainable(system, self.frame.settings, largest(&workspace.q));
+        if !rows.C.is_empty() && exceeds(ending.miss.relative, within) {
+            return not_satisfied(system, time, rows);
         }
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
         match energy::most_accelerated(system, motion) {
             Some((particle, acceleration)) => {
                 StepError::RanAway { time, particle: system.particle_names[particle.0].clone(), acceleration }
             }
-            None => StepError::NotFinite { time, particle: String::new() },
+            None => StepError::NotFinite { time, particle: system.first_moving() },
         }
+    }
+
+    /// Whether the step in the workspace passes an edge.
+    fn edge(&self, state: &State) -> Option<StepError> {
+        let workspace = &*self.frame.workspace;
+        let tried = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: self.scratch.base.end };
+        at_an_edge(self.frame.system, state, tried)
     }
 }
 

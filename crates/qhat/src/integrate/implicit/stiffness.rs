@@ -17,12 +17,14 @@ const PENALTY: f64 = 1e-8;
 impl Matrix {
     /// h_e² K of constraints: −μ ∂²C/∂q².
     pub(super) fn add_geometric_stiffness<const D: usize>(&mut self, at: &Linearization<'_, D>, signed: bool) {
-        let Linearization { system, motion, mu, .. } = *at;
+        let Linearization { system, rows, motion, mu, .. } = *at;
         for (k, named) in system.constraints.iter().enumerate() {
             let multipliers = &mu[named.first_row..named.first_row + named.constraint.row_count(D)];
-            named.constraint.geometric_stiffness(motion, multipliers, &mut |i, j, stiffness| {
-                self.add(self.graph.own_place(k, i, j), &stiffness, signed);
-            });
+            let mut add = |i, j, stiffness| self.add(self.graph.own_place(k, i, j), &stiffness, signed);
+            match rows.feet.bead(&named.constraint, named.first_row, motion.t) {
+                Some(bead) => bead.geometric_stiffness(motion, multipliers, &mut add),
+                None => named.constraint.geometric_stiffness(motion, multipliers, &mut add),
+            }
         }
     }
 

@@ -1,0 +1,124 @@
+//! Edges: places that no substep may pass, because the motion beyond them is another one.
+//!
+//! - The end of a curve.
+//! - A place where the gradient of a row jumps or has no value: where a stretch of a rope has no length, its direction
+//!   d/|d| turns by 180° at once, and a substep that goes over such a place is not the motion of any rope.
+//!
+//! A gradient that turns by more than 120° in a substep has turned fast, or has jumped. The cubic through both ends of
+//! the substep is halved, each time towards the larger turn: a turn becomes small, a jump stays. A gradient that goes
+//! through zero, as at the crossing of x y = 0, jumps as well, but the force does not: the motion goes straight on.
+
+use crate::constraint::{Constraint, Holds, Layout, Rows};
+use crate::point::{Motion, Point, dot};
+use crate::system::System;
+
+/// Cosine of the turn in a substep from which a jump is sought: 120°.
+const TURNED: f64 = -0.5;
+/// Cosine of a turn that is no jump: 60°.
+const SMOOTH: f64 = 0.5;
+/// Halvings of the substep: 1e-14 of it.
+const HALVINGS: usize = 46;
+/// Part of the gradient at the ends of the substep below which a gradient is taken to have gone through zero.
+const VANISHED: f64 = 1e-6;
+
+/// A substep from one motion to another. `before` is J at its start, `rows` are those at its end; inactive rows do not count.
+pub(super) struct Passage<'a, const D: usize> {
+    pub(super) system: &'a System,
+    pub(super) rows: &'a Rows,
+    pub(super) inactive: &'a [bool],
+    pub(super) before: &'a [f64],
+    pub(super) from: Motion<'a, D>,
+    pub(super) to: Motion<'a, D>,
+}
+
+impl<const D: usize> Passage<'_, D> {
+    /// Whether the substep passes an edge.
+    pub(super) fn is_barred(&self) -> bool {
+        self.jump().is_some() || self.past_an_end()
+    }
+
+    fn past_an_end(&self) -> bool {
+        let Passage { system, rows, to, .. } = *self;
+        !system.bead_places.is_empty() && rows.feet.past_an_end(&system.beads(), to).is_some()
+    }
+
+    /// The first constraint whose gradient jumps on the way.
+    pub(super) fn jump(&self) -> Option<usize> {
+        let J = &self.rows.J;
+        self.system.jumpy.iter().copied().find(|&place| {
+            let named = &self.system.constraints[place];
+            let rows = named.first_row..named.first_row + named.constraint.row_count(D);
+            let (first, last) = (J.layout.start[rows.start], J.layout.start[rows.end]);
+            let block = |blocks: &[f64], e: usize| -> Point<D> { std::array::from_fn(|k| blocks[e * D + k]) };
+            let is_active = self.inactive.get(rows.start).is_none_or(|inactive| !inactive);
+            let mut entries = (first..last).map(|e| (block(self.before, e), J.entry::<D>(e)));
+            is_active && entries.any(|(then, now)| has_turned(then, now)) && self.jumps(&named.constraint)
+        })
+    }
+
+    /// Whether a gradient that has turned far has jumped.
+    fn jumps(&self, constraint: &Constraint) -> bool {
+        let Passage { from, to, .. } = *self;
+        let mut rows = Rows::new(Layout::new(std::iter::once(constraint), D), D, self.system.particle_count());
+        let mut q = from.q.to_vec();
+        let mut gradient = |part: f64| -> Vec<f64> {
+            let h = to.t - from.t;
+            let (s, c) = (part * part * (3.0 - 2.0 * part), part * (1.0 - part));
+            for (k, x) in q.iter_mut().enumerate() {
+                let bend = h * c * ((1.0 - part) * from.qd[k] - part * to.qd[k]);
+                *x = (1.0 - s) * from.q[k] + s * to.q[k] + bend;
+            }
+            rows.evaluate(std::iter::once(constraint), Motion::<D> { q: &q, qd: to.qd, t: from.t + part * h });
+            rows.J.blocks.clone()
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        let (mut at_low, mut at_high) = (gradient(low), gradient(high));
+        let scale = size(&at_low).min(size(&at_high));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let at_middle = gradient(middle);
+            let (first, second) = (cosine::<D>(&at_low, &at_middle), cosine::<D>(&at_middle, &at_high));
+            if first > SMOOTH && second > SMOOTH {
+                return false;
+            }
+            if first <= second {
+                (high, at_high) = (middle, at_middle);
+            } else {
+                (low, at_low) = (middle, at_middle);
+            }
+        }
+        let left = size(&at_low).max(size(&at_high));
+        !left.is_finite() || left > VANISHED * scale
+    }
+}
+
+/// Whether one block of a gradient has turned far, or been lost.
+fn has_turned<const D: usize>(then: Point<D>, now: Point<D>) -> bool {
+    let (then_now, then, now) = (dot(then, now), dot(then, then), dot(now, now));
+    if !(then > 0.0) {
+        return false;
+    }
+    !(now > 0.0) || then_now < 0.0 && then_now * then_now > TURNED * TURNED * then * now
+}
+
+/// The least cosine between the blocks of two gradients; −1 where one of them has lost a block.
+fn cosine<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
+    let blocks = a.chunks_exact(D).zip(b.chunks_exact(D));
+    let cosines = blocks.map(|(a, b)| {
+        let [a, b]: [Point<D>; 2] = [a, b].map(|block| std::array::from_fn(|k| block[k]));
+        let (along, product) = (dot(a, b), dot(a, a) * dot(b, b));
+        if product > 0.0 {
+            along / product.sqrt()
+        } else if dot(a, a) == 0.0 && dot(b, b) == 0.0 {
+            1.0
+        } else {
+            -1.0
+        }
+    });
+    cosines.fold(1.0, f64::min)
+}
+
+/// max |x_i|; infinite if one is not a number.
+fn size(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { most.max(x.abs()) })
+}
