@@ -20,6 +20,7 @@
 mod complementarity;
 mod cones;
 mod event_functions;
+mod following;
 mod impact;
 mod lemke;
 mod nearest;

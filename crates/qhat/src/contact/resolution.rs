@@ -7,6 +7,7 @@
 //! only remove energy.
 
 use super::complementarity::{along, size};
+use super::following::close_following;
 use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
@@ -98,9 +99,11 @@ impl<const D: usize> EventResolution<'_, D> {
 
     /// The modes under the applied forces.
     fn settle(&mut self, modes: &mut Modes, touching: &[Touching]) -> Result<(), NoConsistentModes> {
-        let EventResolution { equation, system, .. } = self;
+        let EventResolution { equation, system, thresholds, .. } = self;
         equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
-        settle::<D>(equation, system, modes, touching)
+        settle::<D>(equation, system, modes, touching)?;
+        close_following::<D>(equation, system, modes, touching, thresholds.touch_distance);
+        Ok(())
     }
 
     /// The impulse where friction forces have no answer. Returns the energy lost [J].

@@ -165,7 +165,8 @@ impl<'a, const D: usize> EventStepper<'a, D> {
                 Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => attempt,
                 other => return Err(other),
             };
-            let (speed, tolerance) = (self.run.speed(h), self.run.settings.tolerance);
+            // Of a slip that stops: substeps shrink with it, and a speed of rest by their length would grow.
+            let (speed, tolerance) = (self.run.speed(self.frame), self.run.settings.tolerance);
             let equation = &mut self.run.field.workspace.equation;
             let astray = self.at_start.align::<D>(self.run.system, equation, h);
             let is_aligned = astray.turned <= ALIGNED * tolerance * speed;
@@ -205,13 +206,22 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         let Workspace { equation, q, qd, reading, .. } = workspace;
         let motion = Motion::<D> { q, qd, t };
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
-        if is_closed || modes.broken.iter().any(|broken| !broken) {
+        let may_break = modes.broken.iter().any(|broken| !broken);
+        if is_closed || may_break {
             equation.solve(system, motion, &Feedback::NONE, true);
-            // Links break, and contacts open, by the force that redundant ones share.
+        }
+        let solved = equation.lambda.clone();
+        equation.spread_over_contacts::<D>(system);
+        let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
+        let functions = EventFunctions { system, settings, modes, rest_speed, normals };
+        functions.write::<D>(equation, event_functions);
+        // Links break by the force that redundant rows share; modes are decided by λ of independent rows.
+        let lambda = std::mem::replace(&mut equation.lambda, solved);
+        if may_break {
             reading.share_out::<D>(system, t, &Feedback::NONE, equation);
         }
-        let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
-        EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);
+        functions.add_breakables(&equation.lambda, event_functions);
+        equation.lambda = lambda;
     }
 
     /// Accepts the slips of the substep tried last: they are the directions at the start of the next one.
