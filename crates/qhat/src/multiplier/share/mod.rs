@@ -103,8 +103,9 @@ impl Share {
     }
 
     /// Replaces every λ that is not unique by its share, and notes which these are. `lambda` is a λ with the same force
-    /// as `rows.lambda`, up to what rows that follow from others are off by, and within all cones of friction. `rigid` tells the rows that may act at some time. Only components with one of the `dependent` rows
-    /// are looked at; with `None`, all are.
+    /// as `rows.lambda`, up to what rows that follow from others are off by, and within all cones of friction. `rigid`
+    /// tells the rows that may act at some time. Only components with one of the `dependent` rows are looked at; with
+    /// `None`, all are.
     pub(crate) fn spread<const D: usize>(
         &mut self,
         rows: &RowsToShare<'_>,
