@@ -15,8 +15,8 @@
 //! (Painlevé); a problem that does not end is an error.
 //!
 //! Rows of closed contacts may follow from other active rows, as the fourth leg of a table does. They are left out of A
-//! with λ = 0, so λ is that of independent rows, a vertex of all solutions. Such a contact stays closed as long as its w
-//! is zero; where w > 0 it opens, and where w < 0 one of the contacts that it follows from must open, which Lemke's
+//! with λ = 0, so λ is that of independent rows, a vertex of all solutions. Such a contact stays closed while its w is
+//! zero; where w > 0 it opens, and where w < 0 one of the contacts that it follows from must open, which Lemke's
 //! method finds.
 //! Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), chapter 11.
 

@@ -9,8 +9,8 @@
 //! v_D: 1 in a row D that follows from others, −A_kk⁻¹ A_kD in the rows k that are kept         Jᵀ v_D = 0
 //! ```
 //!
-//! Friction of a sliding contact follows its normal force, so a v with a part in that force would be another motion, and
-//! is left alone.
+//! Friction of a sliding contact follows its normal force, so a v with a part in that force would be another motion,
+//! and is left alone.
 
 use super::Equation;
 use crate::point::norm;

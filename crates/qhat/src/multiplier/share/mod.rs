@@ -8,8 +8,8 @@
 //! λ_i ≥ 0 of ropes, struts and contacts
 //! ```
 //!
-//! Where that share would take a sticking contact out of its cone of friction, λ goes only as far towards it, from the λ
-//! of independent rows by which modes were decided, as all cones of the component allow.
+//! Where that share would take a sticking contact out of its cone of friction, λ goes only as far towards it, from
+//! the λ by which modes were decided, as all cones of the component allow.
 //!
 //! T is the tension of a rod \[N\], L its length \[m\] and EA its own `stiffness` \[N\]; J_iᵀ λ_i is the force that a
 //! row puts on particles that can move \[N\]. Both are forces, so that neither masses nor units nor the form of a row
