@@ -13,15 +13,18 @@
 //! changes (Murty's rule of the least index), which ends for every positive definite A without friction. With
 //! friction pivoting need not end; then `cones.rs` proposes modes to go on from. There may be no solution, or several
 //! (Painlevé); a problem that does not end is an error.
+//!
+//! Rows of closed contacts may follow from other active rows, as the fourth leg of a table does. They are left out of A
+//! with λ = 0, so λ is that of independent rows, a vertex of all solutions. Such a contact stays closed while its w is
+//! zero; where w > 0 it opens, and where w < 0 one of the contacts that it follows from must open, which Lemke's
+//! method finds.
 //! Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), chapter 11.
 
-use super::SAME_WAY;
 use super::cones::propose;
-use super::roundoff::Roundoff;
-use crate::modes::{Mode, Modes, Slip};
+use super::contradictions::{align, contradictions};
+use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::largest;
-use crate::structure::Contact;
 use crate::system::System;
 
 /// Rest of the active rows, relative to the largest right-hand side, that is not solved for again: what a factor leaves
@@ -103,7 +106,7 @@ fn pivot<const D: usize>(
         if equation.lambda.iter().any(|force| force.is_nan()) {
             break;
         }
-        let changes = contradictions::<D>(equation, system, modes, touching);
+        let Some(changes) = contradictions::<D>(equation, system, modes, touching) else { break };
         let Some(&(first, mode)) = changes.first() else {
             let contacts = modes.contacts.clone();
             if aligned == ALIGNMENTS || !align::<D>(equation, system, modes, touching) {
@@ -131,11 +134,16 @@ fn pivot<const D: usize>(
 /// J W, is solved for once more: beside a load of a billion beads it is too much.
 pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
+    solve_refined::<D>(equation, system);
+    equation.spread_over_contacts::<D>(system);
+}
+
+fn solve_refined<const D: usize>(equation: &mut Equation, system: &System) {
     equation.factor::<D>(system, 0.0);
     equation.solve_multipliers::<D>(system);
     equation.write_W_JT_lambda_F::<D>(system);
     let rest = |equation: &Equation| -> Vec<f64> {
-        let is_left_out = |row: usize| equation.is_inactive(row) || !system.is_rigid(row);
+        let is_left_out = |row: usize| equation.is_inactive(row) || equation.is_left_out(row) || !system.is_rigid(row);
         (0..system.row_count()).map(|row| if is_left_out(row) { 0.0 } else { -w::<D>(equation, row) }).collect()
     };
     let before = rest(equation);
@@ -160,67 +168,6 @@ pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, mo
 /// w = J W (Jᵀλ + F) − b of one row.
 pub(super) fn w<const D: usize>(equation: &Equation, row: usize) -> f64 {
     equation.J_W_JT_lambda::<D>(row) - equation.b.sum[row]
-}
-
-/// Every contact that contradicts its mode, with the mode that it changes to.
-fn contradictions<const D: usize>(
-    equation: &Equation,
-    system: &System,
-    modes: &Modes,
-    touching: &[Touching],
-) -> Vec<(usize, Mode)> {
-    let lambda = &equation.lambda;
-    let forces = Roundoff::forces::<D>(equation, system);
-    let w = |row: usize| w::<D>(equation, row);
-    let mut changes = Vec::new();
-    for touching in touching {
-        let k = touching.contact;
-        let Contact { normal, tangents, friction, .. } = &system.contacts.list[k];
-        let small = Roundoff::of::<D>(equation, system, *normal, &forces);
-        let changed = match modes.contacts[k] {
-            // w_n < 0: the gap would close.
-            Mode::Open if w(*normal) < -small.w => Some(touching.closed()),
-            Mode::Open => None,
-            // λ_n < 0: the contact would pull.
-            _ if lambda[*normal] < -small.force => Some(Mode::Open),
-            // |λ_t| > μ λ_n: the contact slips, against the force that held it.
-            Mode::Sticking => {
-                let lambda_t = along(tangents.clone().map(|row| lambda[row]));
-                let size = size(lambda_t);
-                (size > friction * lambda[*normal] + small.force)
-                    .then(|| Mode::sliding(lambda_t.map(|component| -component / size)))
-            }
-            // w_t · d < 0: the impulse would turn the slip round.
-            Mode::Sliding(slip) if touching.may_stick => {
-                let w_t = along(tangents.clone().map(w));
-                let along: f64 = w_t.iter().zip(slip.direction).map(|(w, d)| w * d).sum();
-                (along < -small.w).then_some(Mode::Sticking)
-            }
-            Mode::Smooth | Mode::Sliding(_) => None,
-        };
-        changes.extend(changed.map(|mode| (k, mode)));
-    }
-    changes
-}
-
-/// Turns the direction of contacts that begin to slip, or slip after an impact, to their slip; whether any turned. In
-/// space friction of one contact moves others, so that a slip need not be against the force that held it.
-fn align<const D: usize>(equation: &Equation, system: &System, modes: &mut Modes, touching: &[Touching]) -> bool {
-    let forces = Roundoff::forces::<D>(equation, system);
-    let mut turned = false;
-    for &Touching { contact: k, .. } in
-        touching.iter().filter(|touching| D == 3 && (touching.may_stick || touching.slip.is_none()))
-    {
-        let Mode::Sliding(Slip { direction: d, .. }) = modes.contacts[k] else { continue };
-        let w_t = along(system.contacts.list[k].tangents.clone().map(|row| w::<D>(equation, row)));
-        let size = size(w_t);
-        let small = Roundoff::of::<D>(equation, system, system.contacts.list[k].normal, &forces);
-        if size > small.w && w_t[0] * d[0] + w_t[1] * d[1] < SAME_WAY * size {
-            modes.contacts[k] = Mode::sliding(w_t.map(|component| component / size));
-            turned = true;
-        }
-    }
-    turned
 }
 
 /// The numbers of up to two tangential rows; the second is zero in the plane.

@@ -83,7 +83,8 @@ pub(crate) struct EventFunctions<'a> {
 }
 
 impl EventFunctions<'_> {
-    /// Writes them: three for each contact, then one for each breakable; infinite where nothing can happen.
+    /// Writes three for each contact, for λ of independent rows, by which `complementarity.rs` decides modes; infinite
+    /// where nothing can happen.
     pub(crate) fn write<const D: usize>(&self, equation: &Equation, event_functions: &mut Vec<f64>) {
         let EventFunctions { system, settings, modes, rest_speed, normals } = *self;
         event_functions.clear();
@@ -117,6 +118,11 @@ impl EventFunctions<'_> {
             let turned = rows.map(|row| normals.cosine::<D>(&equation.rows, row)).fold(1.0, f64::min);
             event_functions.extend([lambda[row] / no_force, friction, (turned - TURNED) / FAR]);
         }
+    }
+
+    /// Adds one for each breakable, for λ that redundant rows share.
+    pub(crate) fn add_breakables(&self, lambda: &[f64], event_functions: &mut Vec<f64>) {
+        let EventFunctions { system, modes, .. } = *self;
         for (breakable, &broken) in system.contacts.breakables.iter().zip(&modes.broken) {
             let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, larger);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);

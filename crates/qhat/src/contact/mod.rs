@@ -17,9 +17,12 @@
 //! `impact.rs` the jump of the velocity, `complementarity.rs` the next modes.
 //! Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996).
 
+mod changes;
 mod complementarity;
 mod cones;
+mod contradictions;
 mod event_functions;
+mod following;
 mod impact;
 mod lemke;
 mod nearest;

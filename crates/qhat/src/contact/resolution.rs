@@ -7,6 +7,7 @@
 //! only remove energy.
 
 use super::complementarity::{along, size};
+use super::following::close_following;
 use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
@@ -14,7 +15,6 @@ use crate::multiplier::Equation;
 use crate::point::{Motion, larger, largest};
 use crate::report::{Event, EventKind, Warning};
 use crate::settings::Feedback;
-use crate::structure::Contacts;
 use crate::system::System;
 
 /// Rounds of one resolution. Holding one contact may make another close; more rounds than this are a chain without an
@@ -100,9 +100,11 @@ impl<const D: usize> EventResolution<'_, D> {
 
     /// The modes under the applied forces.
     fn settle(&mut self, modes: &mut Modes, touching: &[Touching]) -> Result<(), NoConsistentModes> {
-        let EventResolution { equation, system, .. } = self;
+        let EventResolution { equation, system, thresholds, .. } = self;
         equation.b.assemble::<D>(&equation.rows, &equation.WQ, &Feedback::NONE);
-        settle::<D>(equation, system, modes, touching)
+        settle::<D>(equation, system, modes, touching)?;
+        close_following::<D>(equation, system, modes, touching, thresholds.touch_distance);
+        Ok(())
     }
 
     /// The impulse where friction forces have no answer. Returns the energy lost [J].
@@ -248,27 +250,6 @@ impl<const D: usize> EventResolution<'_, D> {
         Ok(lost)
     }
 
-    /// Two contacts that give back speed and share a particle that moves, both with an impulse.
-    fn shared(&self, near: &[usize]) -> Option<Warning> {
-        let (list, layout) = (&self.system.contacts.list, &self.equation.rows.J.layout);
-        let struck: Vec<usize> = near
-            .iter()
-            .copied()
-            .filter(|&k| list[k].restitution > 0.0 && self.equation.lambda[list[k].normal] > 0.0)
-            .collect();
-        let moving = |k: usize| {
-            let particles = &layout.particle[layout.start[list[k].normal]..layout.start[list[k].normal + 1]];
-            particles.iter().filter(|particle| self.system.inverse_mass[particle.0] > 0.0)
-        };
-        let pair = struck.iter().enumerate().find_map(|(place, &one)| {
-            let other =
-                struck[place + 1..].iter().find(|&&other| moving(one).any(|a| moving(other).any(|b| a == b)))?;
-            Some([one, *other])
-        })?;
-        let name = |k: usize| self.system.constraints[list[k].constraint].name.clone();
-        Some(Warning::SharedImpact { time: self.t, constraints: pair.map(name) })
-    }
-
     /// Opens the contacts that separate faster than the bounce speed, after an impact the closed ones, too. Returns the
     /// other contacts, with the modes of their slips brought up to date: the complementarity problem decides them.
     fn open_separating(
@@ -331,34 +312,5 @@ impl<const D: usize> EventResolution<'_, D> {
             )
             | None => {}
         }
-    }
-
-    /// Adds the changes from the modes before to those after.
-    fn write_changes(&self, before: &Modes, after: &Modes, events: &mut Vec<Event>) {
-        let Contacts { list: contacts, breakables } = &self.system.contacts;
-        for (k, contact) in contacts.iter().enumerate() {
-            let kind = match (before.contacts[k], after.contacts[k]) {
-                (Mode::Open, Mode::Open) => continue,
-                (Mode::Open, _) => EventKind::Closed,
-                (_, Mode::Open) => EventKind::Opened,
-                (Mode::Sticking, Mode::Sliding(_)) => EventKind::Slipped,
-                (Mode::Sliding(_), Mode::Sticking) => EventKind::Stuck,
-                _ => continue,
-            };
-            events.push(self.event(contact.constraint, kind));
-        }
-        for (number, breakable) in breakables.iter().enumerate() {
-            let is_told = || {
-                let name = &self.system.constraints[breakable.constraint].name;
-                events.iter().any(|event| event.kind == EventKind::Broke && event.constraint == *name)
-            };
-            if after.broken[number] && !before.broken[number] && !is_told() {
-                events.push(self.event(breakable.constraint, EventKind::Broke));
-            }
-        }
-    }
-
-    fn event(&self, constraint: usize, kind: EventKind) -> Event {
-        Event { time: self.t, constraint: self.system.constraints[constraint].name.clone(), kind, impulse: 0.0 }
     }
 }

@@ -1,6 +1,7 @@
 //! What roundoff leaves of forces and accelerations of a contact, by the forces on its own particles.
 
-use crate::multiplier::Equation;
+use super::Touching;
+use crate::multiplier::{Equation, SAME};
 use crate::point::norm;
 use crate::system::System;
 
@@ -12,18 +13,32 @@ const ROUNDOFF: f64 = 1e-10;
 /// with its load, so the least acceleration that matters is this times the ratio of the masses.
 const NO_ACCELERATION: f64 = 1e-12;
 
-/// What roundoff leaves in the normal row of a contact.
-#[derive(Clone, Copy)]
+/// Part of the largest |b| of all touching contacts below which w is roundoff, however little acts on the particles of
+/// its own contact: a few roundings, which λ of the rows near by brings there.
+const SMALLEST: f64 = 16.0 * f64::EPSILON;
+
+/// What roundoff leaves in the rows of a contact.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Roundoff {
-    /// Of w: `NO_ACCELERATION` × (|b| + |J| W |f|), f the sum of the sizes of all forces on a particle.
+    /// Of w: `NO_ACCELERATION` × (|b| + |J| W |f|), f the sum of the sizes of all forces on a particle; at least
+    /// `SMALLEST` × the largest |b| of any touching contact.
     pub(super) w: f64,
-    /// Of λ: `ROUNDOFF` × the same over the diagonal of A.
+    /// Of w in a row that follows from others, which it does up to the sine `SAME`: `SAME` × the same.
+    pub(super) following: f64,
+    /// Of λ: `ROUNDOFF` × the same over the diagonal of A; at least the λ of that.
     pub(super) force: f64,
 }
 
-impl Roundoff {
+/// The forces and right-hand sides by which roundoff is judged.
+pub(super) struct Roundoffs {
     /// Σ |J_ip| |λ_i| + |F_p| of each particle.
-    pub(super) fn forces<const D: usize>(equation: &Equation, system: &System) -> Vec<f64> {
+    forces: Vec<f64>,
+    /// `SMALLEST` × the largest |b| of any row of a touching contact.
+    least: f64,
+}
+
+impl Roundoffs {
+    pub(super) fn new<const D: usize>(equation: &Equation, system: &System, touching: &[Touching]) -> Self {
         let (J, layout) = (&equation.rows.J, &equation.rows.J.layout);
         let mut forces = vec![0.0; system.particle_count()];
         for (row, lambda) in equation.lambda.iter().enumerate().filter(|(_, lambda)| **lambda != 0.0) {
@@ -35,18 +50,23 @@ impl Roundoff {
             let friction = equation.friction.force.chunks_exact(D);
             forces.iter_mut().zip(friction).for_each(|(sum, F)| *sum += F.iter().map(|F| F.abs()).sum::<f64>());
         }
-        forces
+        let contacts = touching.iter().map(|touching| &system.contacts.list[touching.contact]);
+        let rows = contacts.flat_map(|contact| std::iter::once(contact.normal).chain(contact.tangents.clone()));
+        let largest = rows.fold(0.0_f64, |most, row| most.max(equation.b.sum[row].abs()));
+        Roundoffs { forces, least: SMALLEST * largest }
     }
 
-    pub(super) fn of<const D: usize>(equation: &Equation, system: &System, row: usize, forces: &[f64]) -> Self {
+    /// Of the contact with this normal row.
+    pub(super) fn of<const D: usize>(&self, equation: &Equation, system: &System, row: usize) -> Roundoff {
         let (J, layout) = (&equation.rows.J, &equation.rows.J.layout);
         let (mut w, mut diagonal) = (equation.b.sum[row].abs(), 0.0);
         for e in layout.start[row]..layout.start[row + 1] {
             let (particle, J) = (layout.particle[e].0, norm(J.entry::<D>(e)));
-            w += J * system.inverse_mass[particle] * forces[particle];
+            w += J * system.inverse_mass[particle] * self.forces[particle];
             diagonal += J * J * system.inverse_mass[particle];
         }
         // A row between fixed particles has no diagonal: whatever its force is, it does nothing.
-        Roundoff { w: NO_ACCELERATION * w, force: if diagonal > 0.0 { ROUNDOFF * w / diagonal } else { f64::INFINITY } }
+        let force = if diagonal > 0.0 { (ROUNDOFF * w).max(self.least) / diagonal } else { f64::INFINITY };
+        Roundoff { w: (NO_ACCELERATION * w).max(self.least), following: (SAME * w).max(self.least), force }
     }
 }

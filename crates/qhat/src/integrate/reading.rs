@@ -5,11 +5,12 @@
 
 use super::Workspace;
 use crate::constraint::Holds;
-use crate::multiplier::{Equation, RowsToShare, Share};
+use crate::multiplier::{Equation, RowsToShare, Share, Sticking};
 use crate::point::Motion;
 use crate::settings::Feedback;
 use crate::space::in_dimension;
 use crate::state::State;
+use crate::structure::Contact;
 use crate::system::System;
 
 /// The arrays for the share of redundant rows; each list has one number for each row.
@@ -19,6 +20,7 @@ pub(crate) struct Reading {
     flexibility: Vec<f64>,
     acts: Vec<bool>,
     is_one_sided: Vec<bool>,
+    sticking: Vec<Sticking>,
 }
 
 impl Workspace {
@@ -79,7 +81,7 @@ impl Reading {
     }
 
     fn spread<const D: usize>(&mut self, system: &System, t: f64, equation: &mut Equation) {
-        let Reading { share, flexibility, acts, is_one_sided } = self;
+        let Reading { share, flexibility, acts, is_one_sided, sticking } = self;
         flexibility.clear();
         for named in &system.constraints {
             let rows = 0..named.constraint.row_count(D);
@@ -90,15 +92,24 @@ impl Reading {
         acts.extend((0..system.row_count()).map(|row| !inert[row] && !equation.is_inactive(row)));
         is_one_sided.clear();
         is_one_sided.resize(system.row_count(), false);
-        for contact in &system.contacts.list {
-            is_one_sided[contact.normal] = true;
+        sticking.clear();
+        for Contact { normal, tangents, friction, .. } in &system.contacts.list {
+            is_one_sided[*normal] = true;
+            // The tangential rows of a contact that sticks are active, and of no other.
+            if tangents.clone().any(|row| !equation.is_inactive(row)) {
+                sticking.push(Sticking { normal: *normal, tangents: tangents.clone(), friction: *friction });
+            }
         }
+        let lambda = equation.lambda.clone();
+        equation.spread_over_contacts::<D>(system);
         let rows = RowsToShare {
             J: &equation.rows.J,
             inverse_mass: &system.inverse_mass,
             flexibility,
             acts,
             is_one_sided,
+            sticking,
+            lambda: &lambda,
             applied: &equation.Q,
             rates: &equation.b,
             sliding: &equation.sliding,

@@ -44,6 +44,11 @@ impl Equation {
         self.inactive.get(row).is_some_and(|inactive| *inactive)
     }
 
+    /// Whether a row is left out of the factor at hand because it follows from other active rows.
+    pub(crate) fn is_left_out(&self, row: usize) -> bool {
+        self.solver.dependent().binary_search(&(row as u32)).is_ok()
+    }
+
     /// C, Ċ, J and γ, with zeros for C, Ċ and γ of inactive rows; directions of friction go on with the motion.
     pub(crate) fn constrain<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
         self.constrain_all(system, motion);

@@ -23,7 +23,9 @@
 //! triangle of Gram and Schmidt).
 
 use super::Equation;
+use crate::state::Rank;
 use crate::system::System;
+use std::sync::Arc;
 
 /// Pivot below which a row waits: a tenth of a right angle. Rows that are kept at once make M_kept well conditioned.
 const WAITS: f64 = 1e-2;
@@ -70,6 +72,19 @@ impl Equation {
         dependent.extend(left.iter().map(|&(place, _)| system.matrix.order[place]));
         dependent.sort_unstable();
         dependent
+    }
+
+    /// Leaves out `rows`, which have just become active, if all of them follow from the rows that were active with
+    /// `rank`; the rows that are kept are then the same. Says whether it did. The factor and A at hand are lost.
+    pub(crate) fn leave_out<const D: usize>(&mut self, system: &System, rank: &Rank, rows: &[usize]) -> bool {
+        if self.dependent_rows::<D>(system).len() != rank.dependent.len() + rows.len() {
+            return false;
+        }
+        let mut dependent = rank.dependent.clone();
+        dependent.extend(rows.iter().map(|&row| row as u32));
+        dependent.sort_unstable();
+        self.rank = Some(Arc::new(Rank { inactive: self.inactive.clone(), dependent, least: rank.least }));
+        true
     }
 
     /// r_w of the row at a place of the order of elimination.

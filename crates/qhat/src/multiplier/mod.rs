@@ -17,16 +17,18 @@ mod reaction;
 mod rhs;
 mod second_order;
 mod share;
+mod sticking;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use equation::APPROACH;
 pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
+pub(crate) use independent::SAME;
 pub(crate) use rhs::RightHandSide;
 pub use second_order::Freedom;
 pub(crate) use second_order::{freedom, second_order};
-pub(crate) use share::{RowsToShare, Share};
+pub(crate) use share::{RowsToShare, Share, Sticking};
 
 use crate::constraint::Rows;
 use crate::report::Warning;

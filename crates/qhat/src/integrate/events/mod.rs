@@ -4,25 +4,23 @@
 //! Between events the modes of all contacts stand, and a substep is a substep of the pair. The event functions of
 //! `contact/event_functions.rs` are all at least −1 while the modes are right. If one of them is below −1 at the end of
 //! a substep, the substep is tried again with a length at which none is below −1 and the first is back near zero
-//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `slip.rs` gives friction its direction
-//! within a substep.
+//! (`locate.rs`). There `contact/resolution.rs` decides how the motion goes on. `trial.rs` tries one length, and
+//! `slip.rs` gives friction its direction within a substep.
 
 mod locate;
 mod slip;
+mod trial;
 
 use super::Workspace;
 use super::adaptive::pair::PairStepper;
-use super::adaptive::{Attempt, Outcome, Stepper, accepts};
+use super::adaptive::{Attempt, Outcome, Stepper};
 use super::field::{Field, GeneralField, pack, unpack};
-use crate::contact::{
-    EventCause, EventFunctions, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE, rest_speed,
-};
+use crate::contact::{EventCause, EventResolution, Normals, RestThresholds, TOUCH_DISTANCE};
 use crate::drift::Drift;
 use crate::error::StepError;
-use crate::modes::{Mode, Modes};
+use crate::modes::Modes;
 use crate::point::Motion;
 use crate::report::{Event, Warning};
-use crate::settings::Feedback;
 use crate::state::State;
 use slip::AtStart;
 
@@ -33,13 +31,6 @@ const SKIP: f64 = 1e-12;
 /// Length of a substep, in frames, below which friction without an answer is taken to stay without one: above
 /// `SHORTEST` of the frame loop.
 const NO_ANSWER: f64 = 1e-11;
-
-/// Times that the directions of slow slips are aligned in one substep. Each time shrinks what they are off by the part
-/// of w that rods and other contacts take away; of a free particle nothing is left after the first.
-const ALIGNMENTS: usize = 20;
-
-/// What aligned directions may be off by, in tolerances.
-const ALIGNED: f64 = 1e-3;
 
 /// The power of h with which the error of a direction that turns evenly grows, at least.
 const TURNING_ORDER: f64 = 2.0;
@@ -152,37 +143,6 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         Ok(())
     }
 
-    /// Tries a substep of h, with directions of friction that follow their slip or turn to its direction at the
-    /// end (`slip.rs`); if it is accepted, its event functions are at hand.
-    fn try_length(&mut self, state: &State, h: f64) -> Result<Attempt, Outcome> {
-        self.turns = false;
-        let rest_speed = rest_speed(&state.qd, &self.run.field.workspace.equation.WQ, self.frame);
-        let equation = &mut self.run.field.workspace.equation;
-        let turns = self.at_start.prepare::<D>(self.run.system, equation, (state.t, h), rest_speed);
-        for _ in 0..ALIGNMENTS {
-            // The first slope depends on the directions of this try.
-            self.run.stages.is_first_known &= !turns;
-            let attempt = match self.run.attempt(state, h, state.t + h) {
-                Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => attempt,
-                other => return Err(other),
-            };
-            let (speed, tolerance) = (self.run.speed(h), self.run.settings.tolerance);
-            let equation = &mut self.run.field.workspace.equation;
-            let astray = self.at_start.align::<D>(self.run.system, equation, h);
-            let is_aligned = astray.turned <= ALIGNED * tolerance * speed;
-            let error = attempt.error.max(astray.across / speed);
-            self.turns = error > attempt.error;
-            if is_aligned && accepts(error, self.run.settings) {
-                self.write_event_functions(state.t + h);
-                return Ok(Attempt { error, ..attempt });
-            } else if is_aligned {
-                return Err(Outcome::Met(Attempt { error, ..attempt }));
-            }
-            self.run.turn_back(state);
-        }
-        Err(Outcome::NotMet)
-    }
-
     /// The first sliding contact as one whose force has no answer, if any contact slides.
     fn without_answer(&self) -> Option<EventCause> {
         let sliding = self.run.field.workspace.equation.sliding.first()?;
@@ -197,30 +157,6 @@ impl<'a, const D: usize> EventStepper<'a, D> {
         unpack(&stages.qd, &mut field.workspace.qd);
         (self.cause, self.stays) = (Some(cause), true);
         Outcome::Met(Attempt { h: 0.0, error: 0.0, iterations: 0, dissipation: 0.0, drives: 0.0 })
-    }
-
-    /// Event functions at the motion in the workspace, with λ there.
-    fn write_event_functions(&mut self, t: f64) {
-        let EventStepper { run, modes, event_functions, frame, normals, .. } = self;
-        let (system, settings, workspace) = (run.system, run.settings, &mut *run.field.workspace);
-        let Workspace { equation, q, qd, reading, .. } = workspace;
-        let motion = Motion::<D> { q, qd, t };
-        let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
-        if is_closed || modes.broken.iter().any(|broken| !broken) {
-            equation.solve(system, motion, &Feedback::NONE, true);
-            // Links break, and contacts open, by the force that redundant ones share.
-            reading.share_out::<D>(system, t, &Feedback::NONE, equation);
-        }
-        let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
-        EventFunctions { system, settings, modes, rest_speed, normals }.write::<D>(equation, event_functions);
-    }
-
-    /// Accepts the slips of the substep tried last: they are the directions at the start of the next one.
-    fn keep_slips(&mut self) {
-        for sliding in &mut self.run.field.workspace.equation.sliding {
-            sliding.slip.start();
-            self.modes.contacts[sliding.contact] = Mode::Sliding(sliding.slip);
-        }
     }
 }
 

@@ -111,15 +111,34 @@ impl Component {
             None => Box::new(self.make::<D>()),
         };
         self.scale::<D>(rows, &mut numbers);
-        if let Some((x, self_stress)) = self.share::<D>(rows, &mut numbers, lambda) {
-            for (i, &row) in self.rows.iter().enumerate() {
-                if self_stress[i] {
-                    is_unique[row as usize] = false;
-                    lambda[row as usize] = numbers.size[i] * x[i];
-                }
+        if let Some((x, self_stress)) = self.share::<D>(rows, &mut numbers) {
+            let mut shared = rows.lambda.to_vec();
+            for (i, &row) in self.rows.iter().enumerate().filter(|&(i, _)| self_stress[i]) {
+                is_unique[row as usize] = false;
+                shared[row as usize] = numbers.size[i] * x[i];
+            }
+            let own = rows.sticking.iter().filter(|contact| self.rows.binary_search(&(contact.normal as u32)).is_ok());
+            let part = own.fold(1.0, |part, contact| contact.part(lambda, &shared, part));
+            for &row in &self.rows {
+                let (lambda, shared) = (&mut lambda[row as usize], shared[row as usize]);
+                *lambda = if part == 1.0 { shared } else { *lambda + part * (shared - *lambda) };
+            }
+            // Rows that follow from others do so up to the constraint tolerance, and so does λ on the way.
+            if part < 1.0 && numbers.displacements.factor::<D>(self, &numbers.b).is_some() {
+                let (mut x, force) = (self.scaled(&numbers, lambda), std::mem::take(&mut numbers.force));
+                self.balance::<D>(&mut numbers, &force, &mut x);
+                numbers.force = force;
+                let sizes = self.rows.iter().zip(&numbers.size);
+                sizes.zip(x).for_each(|((&row, &size), x)| lambda[row as usize] = size * x);
             }
         }
         self.numbers = Some(numbers);
+    }
+
+    /// x of λ.
+    fn scaled(&self, numbers: &Numbers, lambda: &[f64]) -> Vec<f64> {
+        let rows = self.rows.iter().zip(&numbers.size);
+        rows.map(|(&row, &size)| if size > 0.0 { lambda[row as usize] / size } else { 0.0 }).collect()
     }
 
     fn make<const D: usize>(&self) -> Numbers {
@@ -179,17 +198,10 @@ impl Component {
     }
 
     /// x of the share, and the rows whose λ is not unique; `None` where every λ is unique.
-    fn share<const D: usize>(
-        &self,
-        rows: &RowsToShare<'_>,
-        numbers: &mut Numbers,
-        lambda: &[f64],
-    ) -> Option<(Vec<f64>, Vec<bool>)> {
+    fn share<const D: usize>(&self, rows: &RowsToShare<'_>, numbers: &mut Numbers) -> Option<(Vec<f64>, Vec<bool>)> {
         let smallest = numbers.displacements.factor::<D>(self, &numbers.b)?;
         let self_stress = self.self_stress::<D>(numbers)?;
-        let at_hand = self.rows.iter().zip(&numbers.size);
-        let at_hand: Vec<f64> =
-            at_hand.map(|(&row, &size)| if size > 0.0 { lambda[row as usize] / size } else { 0.0 }).collect();
+        let at_hand = self.scaled(numbers, rows.lambda);
         let mut force = std::mem::take(&mut numbers.force);
         force.fill(0.0);
         self.add_transposed::<D>(&numbers.b, &at_hand, &mut force);

@@ -8,6 +8,9 @@
 //! λ_i ≥ 0 of ropes, struts and contacts
 //! ```
 //!
+//! Where that share would take a sticking contact out of its cone of friction, λ goes only as far towards it, from
+//! the λ by which modes were decided, as all cones of the component allow.
+//!
 //! T is the tension of a rod \[N\], L its length \[m\] and EA its own `stiffness` \[N\]; J_iᵀ λ_i is the force that a
 //! row puts on particles that can move \[N\]. Both are forces, so that neither masses nor units nor the form of a row
 //! play a part. Rows that are not rods do not deform and have no part in the energy of the rods.
@@ -25,6 +28,41 @@ use super::{RightHandSide, Sliding};
 use crate::constraint::Jacobian;
 use crate::linalg::{Incidence, components};
 use component::Component;
+use std::ops::Range;
+
+/// Halvings of the way to the edge of a cone: every bit of a number between 0 and 1.
+const HALVINGS: usize = 53;
+
+/// A sticking contact, |λ_t| ≤ μ λ_n.
+#[derive(Clone, Debug)]
+pub(crate) struct Sticking {
+    pub(crate) normal: usize,
+    pub(crate) tangents: Range<usize>,
+    /// μ.
+    pub(crate) friction: f64,
+}
+
+impl Sticking {
+    /// The largest part t of the way from λ to `to`, up to `part`, with |λ_t| ≤ μ λ_n. λ itself counts as within.
+    pub(super) fn part(&self, lambda: &[f64], to: &[f64], part: f64) -> f64 {
+        let limit = |t: f64| self.friction * (lambda[self.normal] + t * (to[self.normal] - lambda[self.normal]));
+        let squares = |t: f64| {
+            let along = self.tangents.clone().map(|row| lambda[row] + t * (to[row] - lambda[row]));
+            along.map(|force| force * force).sum::<f64>()
+        };
+        let is_within = |t: f64| limit(t) >= 0.0 && squares(t) <= limit(t) * limit(t);
+        if is_within(part) {
+            return part;
+        }
+        // The cone is convex, so what is within it is a stretch that begins at 0.
+        let (mut low, mut high) = (0.0, part);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            *(if is_within(middle) { &mut low } else { &mut high }) = middle;
+        }
+        low
+    }
+}
 
 /// The rows at one motion, as far as their share depends on them. Each list has one number for each row.
 pub(crate) struct RowsToShare<'a> {
@@ -41,6 +79,10 @@ pub(crate) struct RowsToShare<'a> {
     pub(crate) applied: &'a [f64],
     /// J q̈, as the equation asks for it: −γ − ks C − kd Ċ [C/s²].
     pub(crate) rates: &'a RightHandSide,
+    /// λ of independent rows, whose force Jᵀλ is shared.
+    pub(crate) lambda: &'a [f64],
+    /// Sticking contacts: their forces stay within their cones of friction.
+    pub(crate) sticking: &'a [Sticking],
     /// Sliding contacts. Their friction follows the λ of their normal rows, and belongs to F.
     pub(crate) sliding: &'a [Sliding],
 }
@@ -60,9 +102,10 @@ impl Share {
         self.is_unique.resize(rows, true);
     }
 
-    /// Replaces every λ that is not unique by its share, and notes which these are. `lambda` is any λ with the right
-    /// force. `rigid` tells the rows that may act at some time. Only components with one of the `dependent` rows
-    /// are looked at; with `None`, all are.
+    /// Replaces every λ that is not unique by its share, and notes which these are. `lambda` is a λ with the same force
+    /// as `rows.lambda`, up to what rows that follow from others are off by, and within all cones of friction. `rigid`
+    /// tells the rows that may act at some time. Only components with one of the `dependent` rows are looked at; with
+    /// `None`, all are.
     pub(crate) fn spread<const D: usize>(
         &mut self,
         rows: &RowsToShare<'_>,

@@ -1,0 +1,88 @@
+//! λ of sticking contacts where rows follow from others.
+//!
+//! Three feet of a rigid body that stick have nine rows, of which six hold the body. With λ of independent rows, single
+//! feet would do all the work, beyond their cones of friction. Of all λ with the same force Jᵀλ, the one is taken that
+//! slightly elastic contacts between rigid rows would have:
+//!
+//! ```text
+//! least Σ (|J_i| λ_i)² over the rows of contacts,   λ⁰ + Σ_D z_D v_D
+//! v_D: 1 in a row D that follows from others, −A_kk⁻¹ A_kD in the rows k that are kept         Jᵀ v_D = 0
+//! ```
+//!
+//! Friction of a sliding contact follows its normal force, so a v with a part in that force would be another motion,
+//! and is left alone.
+
+use super::Equation;
+use crate::point::norm;
+use crate::structure::Contact;
+use crate::system::System;
+
+/// Part of a v in the rows of contacts below which the part is roundoff: λ is good to some 1e-12 of it.
+const NONE: f64 = 1e-8;
+
+impl Equation {
+    /// Spreads λ over the rows of contacts if one of them sticks and rows follow from others. The motion is the same.
+    /// In the plane λ stays: modes of a cone with two edges are those of a solution with independent rows.
+    pub(crate) fn spread_over_contacts<const D: usize>(&mut self, system: &System) {
+        let is_sticking = |contact: &Contact| contact.tangents.clone().any(|row| !self.is_inactive(row));
+        if D == 2 || self.solver.dependent().is_empty() || !system.contacts.list.iter().any(is_sticking) {
+            return;
+        }
+        let weight = self.weights::<D>(system);
+        let product = |a: &[f64], b: &[f64]| -> f64 { weight.iter().zip(a).zip(b).map(|((w, a), b)| w * a * b).sum() };
+        let add = |factor: f64, v: &[f64], to: &mut [f64]| {
+            to.iter_mut().zip(v).for_each(|(to, v)| *to += factor * v);
+        };
+        let mut lambda = self.lambda.clone();
+        let of_lambda = (self.Q_hat.clone(), self.W_JT_lambda.clone());
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for row in self.solver.dependent().to_vec() {
+            let mut v = self.without_force::<D>(system, row as usize);
+            let largest = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            if self.sliding.iter().any(|contact| v[contact.normal].abs() > NONE * largest) {
+                continue;
+            }
+            let before = product(&v, &v).sqrt();
+            for u in &basis {
+                let along = product(u, &v);
+                add(-along, u, &mut v);
+            }
+            let size = product(&v, &v).sqrt();
+            // What is left has no part in contacts.
+            if size.is_nan() || size <= NONE * before.max(largest * NONE) {
+                continue;
+            }
+            v.iter_mut().for_each(|v| *v /= size);
+            let along = product(&v, &lambda);
+            add(-along, &v, &mut lambda);
+            basis.push(v);
+        }
+        self.lambda = lambda;
+        (self.Q_hat, self.W_JT_lambda) = of_lambda;
+    }
+
+    /// |J_i|² of active rows of contacts, 0 of others.
+    fn weights<const D: usize>(&self, system: &System) -> Vec<f64> {
+        let (J, layout) = (&self.rows.J, &self.rows.J.layout);
+        let mut weight = vec![0.0; system.row_count()];
+        for Contact { normal, tangents, .. } in &system.contacts.list {
+            for row in std::iter::once(*normal).chain(tangents.clone()).filter(|&row| !self.is_inactive(row)) {
+                let entries = layout.start[row]..layout.start[row + 1];
+                weight[row] = entries.map(|e| norm(J.entry::<D>(e))).map(|size| size * size).sum();
+            }
+        }
+        weight
+    }
+
+    /// v_D. λ, Q̂ and W Jᵀλ at hand are lost.
+    fn without_force<const D: usize>(&mut self, system: &System, row: usize) -> Vec<f64> {
+        self.lambda.fill(0.0);
+        self.lambda[row] = 1.0;
+        self.write_W_JT_lambda::<D>(system);
+        let target: Vec<f64> = (0..system.row_count()).map(|row| -self.J_W_JT_lambda::<D>(row)).collect();
+        let mut v = vec![0.0; target.len()];
+        self.solver.solve(&system.matrix, &target, &mut v);
+        v[row] = 1.0;
+        v
+    }
+}
