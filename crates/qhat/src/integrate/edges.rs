@@ -1,6 +1,7 @@
 //! Edges: places that no substep may pass, because the motion beyond them is another one.
 //!
 //! - The end of a curve.
+//! - A place where an arm of a constraint, such as a stretch of a rope, has no length left.
 //! - A place where the gradient of a row jumps or has no value: where a stretch of a rope has no length, its direction
 //!   d/|d| turns by 180° at once, and a substep that goes over such a place is not the motion of any rope.
 //!
@@ -8,6 +9,7 @@
 //! the substep is halved, each time towards the larger turn: a turn becomes small, a jump stays. A gradient that goes
 //! through zero, as at the crossing of x y = 0, jumps as well, but the force does not: the motion goes straight on.
 
+use super::failure::{NO_LENGTH, shortest_arm};
 use crate::constraint::{Constraint, Holds, Layout, Rows};
 use crate::point::{Motion, Point, dot};
 use crate::system::System;
@@ -21,7 +23,8 @@ const HALVINGS: usize = 46;
 /// Part of the gradient at the ends of the substep below which a gradient is taken to have gone through zero.
 const VANISHED: f64 = 1e-6;
 
-/// A substep from one motion to another. `before` is J at its start, `rows` are those at its end; inactive rows do not count.
+/// A substep from one motion to another. `before` is J at its start, `rows` are those at its end; inactive rows do not
+/// count.
 pub(super) struct Passage<'a, const D: usize> {
     pub(super) system: &'a System,
     pub(super) rows: &'a Rows,
@@ -34,7 +37,23 @@ pub(super) struct Passage<'a, const D: usize> {
 impl<const D: usize> Passage<'_, D> {
     /// Whether the substep passes an edge.
     pub(super) fn is_barred(&self) -> bool {
-        self.jump().is_some() || self.past_an_end()
+        self.lost_arm().is_some() || self.jump().is_some() || self.past_an_end()
+    }
+
+    /// The first constraint with an arm that shrinks to nothing. Nearer than that to a guide, roundoff says whether a
+    /// stretch goes round it or through it.
+    pub(super) fn lost_arm(&self) -> Option<usize> {
+        let Passage { system, from, to, .. } = *self;
+        let nothing = NO_LENGTH * system.extent;
+        system.jumpy.iter().copied().find(|&place| {
+            let is_active = self.is_active(system.constraints[place].first_row);
+            let length = |q: &[f64]| shortest_arm::<D>(system, place, q).map_or(f64::INFINITY, |(_, length)| length);
+            is_active && length(to.q) <= nothing && length(from.q) > nothing
+        })
+    }
+
+    fn is_active(&self, row: usize) -> bool {
+        self.inactive.get(row).is_none_or(|inactive| !inactive)
     }
 
     fn past_an_end(&self) -> bool {
@@ -50,9 +69,10 @@ impl<const D: usize> Passage<'_, D> {
             let rows = named.first_row..named.first_row + named.constraint.row_count(D);
             let (first, last) = (J.layout.start[rows.start], J.layout.start[rows.end]);
             let block = |blocks: &[f64], e: usize| -> Point<D> { std::array::from_fn(|k| blocks[e * D + k]) };
-            let is_active = self.inactive.get(rows.start).is_none_or(|inactive| !inactive);
             let mut entries = (first..last).map(|e| (block(self.before, e), J.entry::<D>(e)));
-            is_active && entries.any(|(then, now)| has_turned(then, now)) && self.jumps(&named.constraint)
+            self.is_active(rows.start)
+                && entries.any(|(then, now)| has_turned(then, now))
+                && self.jumps(&named.constraint)
         })
     }
 

@@ -24,7 +24,7 @@ use crate::state::State;
 use crate::system::System;
 
 /// Length of an arm, relative to the extent of the system, below which it has shrunk to nothing.
-const NO_LENGTH: f64 = 1e-6;
+pub(super) const NO_LENGTH: f64 = 1e-6;
 
 /// Part of the accelerations in a row by which J q̈ = −γ must be missed to count as a contradiction: A that is nearly
 /// singular leaves 1e-6 (`ACCEPTED_RESIDUAL` in `multiplier/factor.rs`).
@@ -47,7 +47,8 @@ pub(super) fn at_an_edge<const D: usize>(system: &System, state: &State, tried: 
     system.evaluate_rows(tried, &mut rows);
     let mut inactive = vec![false; rows.C.len()];
     state.modes.write_inactive(&system.contacts, &mut inactive);
-    let place = Passage { system, rows: &rows, inactive: &inactive, before: &before, from, to: tried }.jump()?;
+    let passage = Passage { system, rows: &rows, inactive: &inactive, before: &before, from, to: tried };
+    let place = passage.lost_arm().or_else(|| passage.jump())?;
     let ends = [from.q, tried.q].map(|q| shortest_arm::<D>(system, place, q));
     let shorter = ends.into_iter().flatten().min_by(|(_, a), (_, b)| a.total_cmp(b));
     Some(no_gradient(system, state.t, place, shorter.map(|(ends, _)| ends)))
@@ -62,7 +63,7 @@ pub(super) fn without_length<const D: usize>(system: &System, time: f64, q: &[f6
 }
 
 /// The shortest arm of a constraint that can change, and its length [m].
-fn shortest_arm<const D: usize>(system: &System, place: usize, q: &[f64]) -> Option<([ParticleId; 2], f64)> {
+pub(super) fn shortest_arm<const D: usize>(system: &System, place: usize, q: &[f64]) -> Option<([ParticleId; 2], f64)> {
     let arms = system.constraints[place].constraint.arms().into_iter();
     let moving = arms.filter(|&[a, b]| !(system.is_fixed(a) && system.is_fixed(b)));
     let lengths = moving.map(|[a, b]| ([a, b], norm(minus(block::<D>(q, a), block::<D>(q, b)))));
