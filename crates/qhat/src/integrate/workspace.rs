@@ -2,7 +2,7 @@
 
 use super::runge_kutta::Stages;
 use super::watch::TensionWatch;
-use super::{implicit, rattle};
+use super::{implicit, radau, rattle};
 use crate::chains::Chains;
 use crate::multiplier::{Equation, SolveFor};
 use crate::point::Motion;
@@ -25,6 +25,7 @@ pub struct Workspace {
     pub(super) chains: Option<Chains>,
     pub(super) rattle: rattle::Scratch,
     pub(super) implicit: Option<Box<implicit::Scratch>>,
+    pub(super) radau: Option<Box<radau::Scratch>>,
     /// The record of the largest tension of a frame, if it is to be recorded. A frame loop takes it for the time that
     /// the loop runs, and puts it back.
     pub(super) watch: Option<TensionWatch>,
@@ -43,6 +44,7 @@ impl Workspace {
             chains: None,
             rattle: rattle::Scratch::new(system),
             implicit: None,
+            radau: None,
             watch: None,
         }
     }

@@ -1,6 +1,6 @@
 //! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
 
-use super::{Attempt, Outcome, Stepper, control};
+use super::{Attempt, Outcome, Stepper};
 use crate::drift::{Drift, worst_row};
 use crate::energy;
 use crate::error::StepError;
@@ -151,7 +151,7 @@ impl<'a> Substeps<'a> {
             Outcome::Met(attempt) if attempt.error.is_nan() => return Err(self.not_finite(method, state)),
             Outcome::Met(attempt) => attempt,
         };
-        let growth = control::growth(attempt.error, self.settings.tolerance, method.estimate_order());
+        let growth = method.growth(&attempt, self.settings);
         let is_accepted = accepts(attempt.error, self.settings);
         Ok(if is_accepted { Verdict::Accepted { attempt, growth } } else { Verdict::Rejected { growth } })
     }
@@ -247,7 +247,15 @@ impl<'a> Substeps<'a> {
             }
             None => (Vec::new(), 0.0, false),
         };
-        state.carry = Some(Carry { lambda, substep: self.proposed, deficient, previous: None, drives, resting: 0 });
+        state.carry = Some(Carry {
+            lambda,
+            substep: self.proposed,
+            deficient,
+            previous: None,
+            collocation: None,
+            drives,
+            choice: None,
+        });
         self.report.energy = energy::energy(self.system, state);
         self.report
     }

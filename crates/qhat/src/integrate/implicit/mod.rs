@@ -90,7 +90,8 @@ pub(crate) fn frame<const D: usize>(
         let equation = frame.workspace.solve::<D>(system, state, &Feedback::NONE);
         let (lambda, deficient) = (equation.lambda.clone(), equation.solver.deficient);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
-        state.carry = Some(Carry { lambda, substep: length, deficient, previous: None, drives, resting: 0 });
+        state.carry =
+            Some(Carry { lambda, substep: length, deficient, previous: None, collocation: None, drives, choice: None });
     }
     frame.workspace.equation.solver.memory.forget();
     scratch.newton.matrix.factorizations = frame.factorizations() - before;
@@ -215,6 +216,7 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             state.work.drives += h * mean(carry.drives, drives);
             carry.drives = drives;
             carry.substep = h;
+            carry.collocation = None;
             let previous = carry.previous.get_or_insert_with(|| Previous { q: Vec::new(), qd: Vec::new(), h });
             previous.q.clone_from(&workspace.q);
             previous.qd.clone_from(&workspace.qd);
