@@ -7,10 +7,11 @@ use std::str::FromStr;
 use thiserror::Error;
 
 /// Integrators that hold C = 0, each with tolerances from loose to tight. The recommended tolerance is among them.
-pub const SETTINGS: [(Integrator, &[f64]); 5] = [
+pub const SETTINGS: [(Integrator, &[f64]); 6] = [
     (Integrator::Rattle, &[1e-3, 1e-4, 1e-5]),
     (Integrator::Dopri5, &[1e-3, 1e-4, 1e-6]),
     (Integrator::Dop853, &[1e-3, 1e-4, 1e-6]),
+    (Integrator::Radau5, &[1e-3, 1e-4, 1e-6]),
     // These integrators ignore the tolerance; their step is the frame.
     (Integrator::Implicit, &[1e-4]),
     (Integrator::Bdf2, &[1e-4]),

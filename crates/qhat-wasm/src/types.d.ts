@@ -9,6 +9,7 @@ export type IntegratorName =
   | 'rattle'
   | 'dopri5'
   | 'dop853'
+  | 'radau5'
   | 'implicit'
   | 'bdf2';
 /** The way in which the constraints were solved. */

@@ -256,6 +256,15 @@ pub enum StepError {
         /// The number that is allowed.
         limit: usize,
     },
+    /// The factors of the method would not fit into memory.
+    #[error(
+        "the particles are so many and so closely coupled that {integrator} would need more than 1 GiB for its \
+         factors: use auto, dop853 or bdf2"
+    )]
+    TooCoupled {
+        /// The integrator that was chosen.
+        integrator: Integrator,
+    },
     /// A setting was refused.
     #[error(transparent)]
     Settings(#[from] SettingsError),

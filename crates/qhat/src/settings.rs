@@ -25,6 +25,9 @@ pub enum Integrator {
     Dopri5,
     /// Runge–Kutta of order 8 on the equation, projected after each step; substeps of its own choosing.
     Dop853,
+    /// Radau IIA of order 5 solved at the end of each substep, projected; substeps of its own choosing that no
+    /// stiffness bounds.
+    Radau5,
     /// Backward Euler solved at the end of the step, order 1, projected: takes any load at any h, and dissipates.
     #[cfg_attr(feature = "serde", serde(alias = "backward-euler"))]
     Implicit,
@@ -34,7 +37,7 @@ pub enum Integrator {
 
 impl Integrator {
     /// All of them.
-    pub const ALL: [Integrator; 9] = [
+    pub const ALL: [Integrator; 10] = [
         Integrator::Euler,
         Integrator::SymplecticEuler,
         Integrator::Rk4,
@@ -42,6 +45,7 @@ impl Integrator {
         Integrator::Rattle,
         Integrator::Dopri5,
         Integrator::Dop853,
+        Integrator::Radau5,
         Integrator::Implicit,
         Integrator::Bdf2,
     ];
@@ -65,6 +69,7 @@ impl Integrator {
             Integrator::Rattle => "rattle",
             Integrator::Dopri5 => "dopri5",
             Integrator::Dop853 => "dop853",
+            Integrator::Radau5 => "radau5",
             Integrator::Implicit => "implicit",
             Integrator::Bdf2 => "bdf2",
         }
@@ -72,7 +77,10 @@ impl Integrator {
 
     /// Whether the integrator chooses its own substeps within a frame of h; otherwise its steps are exactly h.
     pub fn is_adaptive(self) -> bool {
-        matches!(self, Integrator::Auto | Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853)
+        matches!(
+            self,
+            Integrator::Auto | Integrator::Rattle | Integrator::Dopri5 | Integrator::Dop853 | Integrator::Radau5
+        )
     }
 
     /// Whether the integrator finds the time of an event, such as a contact that closes or a rod that breaks.
@@ -80,8 +88,7 @@ impl Integrator {
         matches!(self, Integrator::Auto | Integrator::Dopri5 | Integrator::Dop853)
     }
 
-    /// Whether the integrator solves at the end of the step, so that no stiffness bounds h. A frame is then one step,
-    /// halved only in need.
+    /// Whether a frame of h is one step, solved at its end and halved only in need.
     pub fn is_implicit(self) -> bool {
         matches!(self, Integrator::Implicit | Integrator::Bdf2)
     }
@@ -108,7 +115,7 @@ impl Integrator {
             Integrator::Euler | Integrator::SymplecticEuler | Integrator::Implicit => 1,
             Integrator::Rattle | Integrator::Bdf2 => 2,
             Integrator::Rk4 => 4,
-            Integrator::Dopri5 => 5,
+            Integrator::Dopri5 | Integrator::Radau5 => 5,
             Integrator::Dop853 | Integrator::Auto => 8,
         }
     }

@@ -1,6 +1,7 @@
 //! State: positions, velocities and time, and all that a restart needs to go on with the same bits.
 
 use crate::modes::{Mode, Modes};
+use crate::settings::Integrator;
 use std::sync::Arc;
 
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
@@ -56,7 +57,7 @@ pub(crate) struct Rank {
 }
 
 /// The data that an integrator carries from one frame to the next.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Carry {
     /// The last multipliers, the first guess of the next.
     pub(crate) lambda: Vec<f64>,
@@ -67,10 +68,30 @@ pub(crate) struct Carry {
     pub(crate) is_nearly_singular: bool,
     /// The start of the last step, for a method that looks back.
     pub(crate) previous: Option<Previous>,
+    /// The last substep of a method of collocation.
+    pub(crate) collocation: Option<Collocation>,
     /// Power of the drives at the end of the last step [W], for a rule that looks back.
     pub(crate) drives: f64,
-    /// Frames for which auto stays with a method that solves at the end of the step.
-    pub(crate) resting: u32,
+    /// What auto chose for the next frames.
+    pub(crate) choice: Option<Choice>,
+}
+
+/// An integrator that auto stays with, and for how many frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Choice {
+    pub(crate) integrator: Integrator,
+    pub(crate) frames: u32,
+}
+
+/// A substep of a method of collocation: a guess for the next, and its error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Collocation {
+    /// The length of that substep [s].
+    pub(crate) h: f64,
+    /// Its error estimate, in the unit of the tolerance.
+    pub(crate) error: f64,
+    /// Changes of velocities and the multipliers of its three stages, one after the other.
+    pub(crate) stages: Vec<f64>,
 }
 
 /// What a method of constant substeps knows of their lengths.

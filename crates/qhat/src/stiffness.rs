@@ -1,10 +1,7 @@
 //! Stiffness −∂Q/∂q of one constraint or force, block by block, so that a method can leave out blocks that may be
 //! negative.
 
-use crate::linalg::block::Block;
-#[cfg(test)]
-use crate::linalg::block::transposed;
-#[cfg(test)]
+use crate::linalg::block::{Block, transposed};
 use crate::space::ParticleId;
 
 /// The stiffness [N/m] between two particles i and j; with i = j that of one particle on itself.
@@ -20,6 +17,32 @@ pub(crate) enum Stiffness<const D: usize> {
 }
 
 impl<const D: usize> Stiffness<D> {
+    /// Calls `visit(row, column, block)` with every block of it, of the particles i and j.
+    #[inline(always)]
+    pub(crate) fn blocks(
+        &self,
+        (i, j): (ParticleId, ParticleId),
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>),
+    ) {
+        match self {
+            Stiffness::Difference(block) => {
+                visit(i, i, *block);
+                if i != j {
+                    let other = block.map(|row| row.map(|entry| -entry));
+                    visit(j, j, *block);
+                    visit(i, j, other);
+                    visit(j, i, other);
+                }
+            }
+            Stiffness::Definite(block) | Stiffness::Indefinite(block) => {
+                visit(i, j, *block);
+                if i != j {
+                    visit(j, i, transposed(block));
+                }
+            }
+        }
+    }
+
     /// factor times it, for a factor that is not negative.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         let scaled = |block: Block<D>| block.map(|row| row.map(|entry| factor * entry));
@@ -35,28 +58,12 @@ impl<const D: usize> Stiffness<D> {
 impl<const D: usize> Stiffness<D> {
     /// Adds all blocks that the stiffness between i and j stands for to a dense matrix.
     pub(crate) fn add_to(&self, dense: &mut [Vec<f64>], i: ParticleId, j: ParticleId) {
-        let mut put = |(i, j): (ParticleId, ParticleId), sign: f64, block: &Block<D>| {
-            for (k, row) in block.iter().enumerate() {
-                for (l, entry) in row.iter().enumerate() {
-                    dense[i.0 * D + k][j.0 * D + l] += sign * entry;
+        self.blocks((i, j), &mut |row, column, block| {
+            for (k, numbers) in block.iter().enumerate() {
+                for (l, entry) in numbers.iter().enumerate() {
+                    dense[row.0 * D + k][column.0 * D + l] += entry;
                 }
             }
-        };
-        match self {
-            Stiffness::Difference(block) => {
-                put((i, i), 1.0, block);
-                if i != j {
-                    put((j, j), 1.0, block);
-                    put((i, j), -1.0, block);
-                    put((j, i), -1.0, block);
-                }
-            }
-            Stiffness::Definite(block) | Stiffness::Indefinite(block) => {
-                put((i, j), 1.0, block);
-                if i != j {
-                    put((j, i), 1.0, &transposed(block));
-                }
-            }
-        }
+        });
     }
 }

@@ -44,6 +44,7 @@ mod size;
 mod snapshot;
 mod softness;
 mod step_size;
+mod stiff;
 mod systems;
 mod tension;
 mod threads;

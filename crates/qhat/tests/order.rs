@@ -98,6 +98,12 @@ fn dop853_is_of_order_eight() {
 }
 
 #[test]
+fn radau5_is_of_order_five() {
+    // Between steps that are too long for one substep and the 1e-10 to which the stages are solved.
+    check(Integrator::Radau5, &[10, 20], 0.1);
+}
+
+#[test]
 fn rattle_is_of_order_two() {
     check(Integrator::Rattle, &[200, 400, 800], 0.1);
 }

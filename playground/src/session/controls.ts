@@ -91,7 +91,7 @@ export const STEP: ControlSpec = {
 };
 
 export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
-  auto: 'dop853, or bdf2 where the motion is so stiff that dop853 cannot finish a frame in time.',
+  auto: 'dop853; radau5 where damping or stiffness bounds its substeps; bdf2 where neither finishes a frame in time.',
   euler:
     'The method of the first program: the force at the start acts over the whole step. It drifts and gains energy.',
   'symplectic-euler':
@@ -102,6 +102,8 @@ export const INTEGRATOR_SENTENCES: Record<Controls['integrator'], string> = {
     'Order five with adaptive substeps, projected after each substep: accurate and cheap for small systems.',
   dop853:
     'Order eight with adaptive substeps, projected after each substep: the most accurate integrator here.',
+  radau5:
+    'Order five, solved at the end of adaptive substeps: for stiff springs and dampers, whose rates bound no substep.',
   implicit: 'Backward Euler: stable under any load at any h, and loses energy.',
   bdf2: 'Backward differences of order two: stable under any load at any h, and loses far less energy.',
 };

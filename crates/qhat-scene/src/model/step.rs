@@ -29,7 +29,7 @@ pub(crate) struct Step {
     /// needs more gives a warning with its remaining error.
     #[schemars(range(min = 1))]
     pub(crate) frame_budget: u32,
-    /// The most row solves that auto may take in a frame before bdf2 replaces dop853, 1 or more.
+    /// The most row solves that auto may take in a frame before bdf2 replaces dop853 and radau5, 1 or more.
     #[schemars(range(min = 1))]
     pub(crate) frame_work: u32,
     /// The duration of a run of the scene [s], above 0.

@@ -13,7 +13,7 @@
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};
-use crate::linalg::block::{Block, diagonal, outer, plus};
+use crate::linalg::block::{Block, diagonal, outer, plus, product};
 use crate::point::{Motion, Point, add, dot, first, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -43,6 +43,14 @@ impl AirDrag {
     fn relative<const D: usize>(&self, motion: Motion<'_, D>) -> Point<D> {
         let (x, v) = (motion.x(self.particle), motion.v(self.particle));
         std::array::from_fn(|k| v[k] - (self.wind[k] + dot(first::<D>(&self.gradient[k]), x)))
+    }
+
+    /// rate B.
+    fn resistance<const D: usize>(&self, motion: Motion<'_, D>, rate: f64) -> Block<D> {
+        let u = self.relative(motion);
+        let speed = norm(u);
+        let B = diagonal(rate * (self.linear + self.quadratic * speed));
+        if speed > 0.0 { plus(B, rate * self.quadratic / speed, outer(1.0, u, u)) } else { B }
     }
 
     fn force<const D: usize>(&self, motion: Motion<'_, D>) -> Point<D> {
@@ -81,15 +89,20 @@ impl Acts for AirDrag {
         rate: f64,
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     ) {
-        let u = self.relative(motion);
-        let speed = norm(u);
-        let mut B: Block<D> = diagonal(rate * (self.linear + self.quadratic * speed));
-        if speed > 0.0 {
-            B = plus(B, rate * self.quadratic / speed, outer(1.0, u, u));
-        }
+        let B = self.resistance(motion, rate);
         // BG is not symmetric and is left out. For short steps it is small beside rate·B, so Newton's method converges
         // without it.
         visit(self.particle, self.particle, Stiffness::Difference(B));
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        let B = self.resistance(motion, 1.0);
+        let G: Block<D> = std::array::from_fn(|k| first::<D>(&self.gradient[k]).map(|slope| -slope));
+        visit(self.particle, self.particle, product(&B, &G), B);
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -6,15 +6,15 @@
 //! F_a = −[k₁ x + k₃ x³ + kd L̇·n] n,   F_b = −F_a            [N]
 //! V   = ½ k₁ x² + ¼ k₃ x⁴                                    [J]
 //! power of the damper = −kd (L̇·n)²                           [W]
-//! −∂F_a/∂x_a = (k₁ + 3 k₃ x²) nnᵀ + [k₁ x + k₃ x³ + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
+//! −∂F_a/∂x_a = (k₁ + 3 k₃ x²) nnᵀ + [k₁ x + k₃ x³ + kd L̇·n] (I − nnᵀ)/|L| + kd nṅᵀ,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
 //! At |L| = 0 the direction is undefined, and the force is zero.
 
-use super::line::Line;
+use super::line::{Line, visit_both};
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
-use crate::linalg::block::outer;
+use crate::linalg::block::{Block, outer, plus};
 use crate::point::{Motion, add, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -93,6 +93,18 @@ impl Acts for CubicSpring {
         let along = outer(self.along(line.length) + rate * self.damping, line.n, line.n);
         visit(self.a, self.b, Stiffness::Difference(along));
         visit(self.a, self.b, Stiffness::Difference(line.across(across)));
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        let Some(line) = Line::between(motion, self.a, self.b) else { return };
+        let across = (self.pull(line.length) + self.damping * line.rate) / line.length;
+        let along = plus(line.across(across), self.along(line.length), outer(1.0, line.n, line.n));
+        let turning = outer(self.damping, line.n, line.turning(motion, self.a, self.b));
+        visit_both((self.a, self.b), plus(along, 1.0, turning), outer(self.damping, line.n, line.n), visit);
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -7,7 +7,7 @@
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::not_negative;
-use crate::linalg::block::diagonal;
+use crate::linalg::block::{Block, diagonal, zero};
 use crate::point::{Motion, add, dot, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -58,6 +58,16 @@ impl Acts for Drag {
             for i in 0..motion.q.len() / D {
                 visit(ParticleId(i), ParticleId(i), stiffness);
             }
+        }
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        for i in (0..motion.q.len() / D).map(ParticleId) {
+            visit(i, i, zero(), diagonal(self.coefficient));
         }
     }
 

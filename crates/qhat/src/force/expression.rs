@@ -109,6 +109,21 @@ impl Acts for ExpressionForce {
         });
     }
 
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        self.slopes::<D>(motion, &mut |k, particle, by_position, by_velocity| {
+            let row = |slopes: Point<D>| {
+                let mut block = zero::<D>();
+                block[k] = slopes.map(|slope| -slope);
+                block
+            };
+            visit(self.particle, particle, row(by_position), row(by_velocity));
+        });
+    }
+
     fn dimension(&self) -> Option<usize> {
         Some(self.components.len())
     }

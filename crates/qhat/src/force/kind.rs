@@ -1,6 +1,7 @@
 //! Kind: the questions that every kind of force answers, and the types of the answers.
 
 use super::ForceError;
+use crate::linalg::block::{Block, zero};
 use crate::point::Motion;
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -32,6 +33,18 @@ pub(crate) trait Acts {
         rate: f64,
         visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
     );
+
+    /// Calls `visit(i, j, −∂Q_i/∂x_j [N/m], −∂Q_i/∂v_j [N·s/m])`, exact and in both orders of each pair. This is the
+    /// default, for forces that do not depend on velocities; their stiffness is symmetric.
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        self.tangent::<D>(motion, 0.0, &mut |i, j, stiffness| {
+            stiffness.blocks((i, j), &mut |row, column, block| visit(row, column, block, zero()));
+        });
+    }
 
     /// The only number of dimensions in which the force can be used; `None` if it can be used in two and in three.
     fn dimension(&self) -> Option<usize> {

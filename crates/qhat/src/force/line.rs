@@ -1,7 +1,7 @@
 //! The line between two particles, along which springs pull and actuators push.
 //!
 //! ```text
-//! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|
+//! L = x_a − x_b,   L̇ = v_a − v_b,   n = L/|L|,   ∂(L̇·n)/∂L = ṅ
 //! ```
 
 use crate::linalg::block::{Block, diagonal, outer, plus};
@@ -15,6 +15,20 @@ pub(super) struct Line<const D: usize> {
     pub(super) n: Point<D>,
 }
 
+/// Calls `visit` with the four blocks of a force that depends on x_a − x_b and v_a − v_b alone.
+pub(super) fn visit_both<const D: usize>(
+    (a, b): (ParticleId, ParticleId),
+    by_position: Block<D>,
+    by_velocity: Block<D>,
+    visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+) {
+    let negative = |block: Block<D>| block.map(|row| row.map(|entry| -entry));
+    visit(a, a, by_position, by_velocity);
+    visit(b, b, by_position, by_velocity);
+    visit(a, b, negative(by_position), negative(by_velocity));
+    visit(b, a, negative(by_position), negative(by_velocity));
+}
+
 impl<const D: usize> Line<D> {
     /// The line from b to a; `None` at |L| = 0, where no direction is defined.
     pub(super) fn between(motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Option<Self> {
@@ -26,6 +40,12 @@ impl<const D: usize> Line<D> {
         }
         let n = scaled(1.0 / length, L);
         Some(Line { length, rate: dot(Ld, n), n })
+    }
+
+    /// ṅ = (L̇ − (L̇·n) n)/|L|, of the line from b to a.
+    pub(super) fn turning(&self, motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Point<D> {
+        let Ld = minus(motion.v(a), motion.v(b));
+        std::array::from_fn(|k| (Ld[k] - self.rate * self.n[k]) / self.length)
     }
 
     /// s (I − nnᵀ).

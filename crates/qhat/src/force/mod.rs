@@ -44,6 +44,7 @@ pub use pressure::{Facet, Pressure};
 pub use spring::Spring;
 pub use torsion::TorsionSpring;
 
+use crate::linalg::block::Block;
 use crate::point::Motion;
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -92,6 +93,13 @@ macro_rules! forces {
                 visit: &mut impl FnMut(ParticleId, ParticleId, Stiffness<D>),
             ) {
                 match self { $(Force::$kind(force) => force.tangent(motion, rate, visit),)* }
+            }
+            fn linearize<const D: usize>(
+                &self,
+                motion: Motion<'_, D>,
+                visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+            ) {
+                match self { $(Force::$kind(force) => force.linearize(motion, visit),)* }
             }
             fn dimension(&self) -> Option<usize> {
                 match self { $(Force::$kind(force) => force.dimension(),)* }

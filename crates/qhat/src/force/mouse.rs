@@ -11,7 +11,7 @@
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{all_finite, not_negative};
-use crate::linalg::block::diagonal;
+use crate::linalg::block::{Block, diagonal};
 use crate::point::{Motion, add, dot, first, minus, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -62,6 +62,14 @@ impl Acts for MouseSpring {
     ) {
         let stiffness = diagonal(self.stiffness + rate * self.damping);
         visit(self.particle, self.particle, Stiffness::Difference(stiffness));
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        _: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        visit(self.particle, self.particle, diagonal(self.stiffness), diagonal(self.damping));
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -5,16 +5,16 @@
 //! F_a = −[ks (|L| − r) + kd L̇·n] n,   F_b = −F_a           [N]
 //! V   = ½ ks (|L| − r)²                                     [J]
 //! power of the damper = −kd (L̇·n)²                          [W]
-//! −∂F_a/∂x_a = ks nnᵀ + [ks (|L| − r) + kd L̇·n] (I − nnᵀ)/|L| + …,   −∂F_a/∂v_a = kd nnᵀ
+//! −∂F_a/∂x_a = ks nnᵀ + [ks (|L| − r) + kd L̇·n] (I − nnᵀ)/|L| + kd nṅᵀ,   −∂F_a/∂v_a = kd nnᵀ
 //! ```
 //!
 //! ks [N/m] and kd [N·s/m] are the spring's own and not the feedback coefficients of the same name. At |L| = 0 the
 //! direction is undefined, and the force is zero, which is exact for r = 0.
 
-use super::line::Line;
+use super::line::{Line, visit_both};
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::not_negative;
-use crate::linalg::block::{diagonal, outer};
+use crate::linalg::block::{Block, diagonal, outer, plus, zero};
 use crate::point::{Motion, add, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -85,6 +85,23 @@ impl Acts for Spring {
         let geometric = line.across(across);
         visit(self.a, self.b, Stiffness::Difference(definite));
         visit(self.a, self.b, Stiffness::Difference(geometric));
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        let Some(line) = Line::between(motion, self.a, self.b) else {
+            if self.rest == 0.0 {
+                visit_both((self.a, self.b), diagonal(self.stiffness), zero(), visit);
+            }
+            return;
+        };
+        let across = (self.stiffness * (line.length - self.rest) + self.damping * line.rate) / line.length;
+        let along = plus(line.across(across), self.stiffness, outer(1.0, line.n, line.n));
+        let turning = outer(self.damping, line.n, line.turning(motion, self.a, self.b));
+        visit_both((self.a, self.b), plus(along, 1.0, turning), outer(self.damping, line.n, line.n), visit);
     }
 
     fn particles(&self) -> Vec<ParticleId> {

@@ -226,6 +226,8 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
         }
     }
 
+    check_linearized::<D>(case, q, qd);
+
     let mut bounds = [(0.0, 0.0); PARTICLES];
     for force in &case.forces {
         force.stiffness(Motion::<D> { q, qd: &still, t: T }, &mut |id, stiffness, damping| {
@@ -253,6 +255,61 @@ fn check_one<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
             assert!(row(&by_velocity) <= damping + CLOSE, "{name}, D = {D}: above its bound {damping}");
         }
     }
+}
+
+/// With moving particles: what `linearize` gives is exact, dampers whose direction turns and all.
+fn check_linearized<const D: usize>(case: &Case, q: &[f64], qd: &[f64]) {
+    let by_position = minus_slopes(q, |q| case.force::<D>(q, qd));
+    let by_velocity = minus_slopes(qd, |qd| case.force::<D>(q, qd));
+    let mut exact = vec![vec![[0.0; 2]; q.len()]; q.len()];
+    for force in &case.forces {
+        force.linearize(Motion::<D> { q, qd, t: T }, &mut |i, j, position, velocity| {
+            for row in 0..D {
+                for column in 0..D {
+                    let [to, of_velocity] = &mut exact[i.0 * D + row][j.0 * D + column];
+                    *to += position[row][column];
+                    *of_velocity += velocity[row][column];
+                }
+            }
+        });
+    }
+    for j in 0..q.len() {
+        for i in 0..q.len() {
+            for (entry, difference) in exact[i][j].into_iter().zip([by_position[j][i], by_velocity[j][i]]) {
+                assert!(
+                    (entry - difference).abs() < 10.0 * CLOSE,
+                    "{}, D = {D}: [{i}][{j}] = {entry}, not {difference}",
+                    case.name
+                );
+            }
+        }
+    }
+}
+
+/// Forces that do not have the same tangent in both directions, or not the same at rest.
+#[test]
+fn forces_without_symmetry_are_linearized_exactly() {
+    let mut numbers = Numbers(4);
+    for case in one_sided::<2>() {
+        check_linearized::<2>(&case, &numbers.vector(2 * PARTICLES), &numbers.vector(2 * PARTICLES));
+    }
+    for case in one_sided::<3>() {
+        check_linearized::<3>(&case, &numbers.vector(3 * PARTICLES), &numbers.vector(3 * PARTICLES));
+    }
+}
+
+fn one_sided<const D: usize>() -> Vec<Case> {
+    let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
+    let number = |name: &str| name.strip_prefix('p').and_then(|n| n.parse().ok()).map(ParticleId);
+    let parse = |text: &&str| Expression::parse(text, &Scope::new(Purpose::Force, dimension, &number)).unwrap();
+    let components = ["p1.vx*p0.x - p0.vy^3", "sin(p2.x) + p0.vx*t", "exp(p0.y)*p1.vy"];
+    let force = ExpressionForce { particle: ParticleId(0), components: components[..D].iter().map(parse).collect() };
+    let air = AirDrag {
+        wind: [0.4, -0.7, 0.2],
+        gradient: [[0.2, -0.5, 0.1], [0.7, 0.1, -0.3], [0.3, 0.6, 0.2]],
+        ..AirDrag::still(ParticleId(1), 0.3, 0.8)
+    };
+    vec![case("expression", force, false), case("wind that varies", air, false)]
 }
 
 /// A unit vector for each particle.

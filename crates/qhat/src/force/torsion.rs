@@ -5,7 +5,7 @@
 //! V = ½ k Δ²,   Δ = θ − θ₀                                  [J]
 //! F = −(k Δ + kd θ̇) ∇θ,   θ̇ = ∇θ · v                        [N]
 //! power of the damper = −kd θ̇²                              [W]
-//! −∂F/∂q − rate ∂F/∂q̇ = (k + rate kd) ∇θ∇θᵀ + k Δ ∇²θ + …   [N/m]
+//! −∂F/∂q = k ∇θ∇θᵀ + (k Δ + kd θ̇) ∇²θ + kd ∇θ (∇²θ v)ᵀ,   −∂F/∂q̇ = kd ∇θ∇θᵀ
 //! ```
 //!
 //! In the plane θ is signed, positive counter-clockwise. u is turned by θ₀ first, so that Δ lies in (−π, π]. The arms
@@ -30,7 +30,7 @@
 
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
-use crate::linalg::block::{Block, diagonal, outer, plus, zero};
+use crate::linalg::block::{Block, diagonal, outer, plus, times, zero};
 use crate::point::{Motion, Point, add, dot, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -76,13 +76,16 @@ impl<const D: usize> Arm<D> {
     }
 }
 
-/// The hinge at one motion: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane.
+/// The hinge at one motion: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane, and 1/sin θ and cot θ
+/// alone, which are zero in the plane and with arms in line.
 struct Bend<const D: usize> {
     delta: f64,
     u: Arm<D>,
     w: Arm<D>,
     by_sine: f64,
     by_tangent: f64,
+    cosecant: f64,
+    cotangent: f64,
 }
 
 impl TorsionSpring {
@@ -103,7 +106,7 @@ impl TorsionSpring {
         let from = plus_scaled(scaled(cosine, u.0), sine, turned(u.0));
         let delta = libm::atan2(from[0] * w.0[1] - from[1] * w.0[0], dot(from, w.0));
         let arm = |(along, length), sign| Arm { along, length, across: turned(along), sign };
-        Bend { delta, u: arm(u, -1.0), w: arm(w, 1.0), by_sine: 0.0, by_tangent: 0.0 }
+        Bend { delta, u: arm(u, -1.0), w: arm(w, 1.0), by_sine: 0.0, by_tangent: 0.0, cosecant: 0.0, cotangent: 0.0 }
     }
 
     fn bend_in_space<const D: usize>(&self, u: (Point<D>, f64), w: (Point<D>, f64)) -> Option<Bend<D>> {
@@ -116,7 +119,9 @@ impl TorsionSpring {
         if sine > 0.0 && other > 0.0 {
             let (n_u, n_w) = (scaled(1.0 / sine, towards_w), scaled(1.0 / other, towards_u));
             let by_sine = delta / sine;
-            return Some(Bend { delta, u: arm(u, n_u), w: arm(w, n_w), by_sine, by_tangent: by_sine * cosine });
+            let (cosecant, cotangent) = (1.0 / sine, cosine / sine);
+            let (u, w) = (arm(u, n_u), arm(w, n_w));
+            return Some(Bend { delta, u, w, by_sine, by_tangent: by_sine * cosine, cosecant, cotangent });
         }
         if delta != 0.0 {
             return None;
@@ -128,13 +133,46 @@ impl TorsionSpring {
         let n = scaled(1.0 / norm(n), n);
         // (θ − θ₀)/sin θ tends to cos θ, which is 1 or −1.
         let side = if cosine > 0.0 { 1.0 } else { -1.0 };
-        Some(Bend { delta, u: arm(u, n), w: arm(w, scaled(-side, n)), by_sine: side, by_tangent: 1.0 })
+        let (u, w) = (arm(u, n), arm(w, scaled(-side, n)));
+        Some(Bend { delta, u, w, by_sine: side, by_tangent: 1.0, cosecant: 0.0, cotangent: 0.0 })
     }
 
     /// ∂θ/∂x_a, ∂θ/∂x_b, ∂θ/∂x_c, with the particles.
     fn gradient<const D: usize>(&self, bend: &Bend<D>) -> [(ParticleId, Point<D>); 3] {
         let (a, c) = (bend.u.gradient(), bend.w.gradient());
         [(self.a, a), (self.b, scaled(-1.0, plus_scaled(a, 1.0, c))), (self.c, c)]
+    }
+
+    /// The blocks of s ∇²θ, for s and for s cot θ and s/sin θ, which have limits that s has not.
+    fn curvature<const D: usize>(
+        &self,
+        bend: &Bend<D>,
+        s: f64,
+        [by_tangent, by_sine]: [f64; 2],
+    ) -> [(ParticleId, ParticleId, Block<D>); 6] {
+        let (u, w) = (&bend.u, &bend.w);
+        let (mut uu, mut ww, mut uw) = (zero(), zero(), zero());
+        uu = plus(uu, s, u.curvature());
+        ww = plus(ww, s, w.curvature());
+        if D == 3 {
+            // m mᵀ = I − û ûᵀ − n_u n_uᵀ.
+            let mm = plus(diagonal(1.0), -1.0, outer(1.0, u.along, u.along));
+            let mm = plus(mm, -1.0, outer(1.0, u.across, u.across));
+            uu = plus(uu, by_tangent / (u.length * u.length), mm);
+            ww = plus(ww, by_tangent / (w.length * w.length), mm);
+            uw = plus(uw, -by_sine / (u.length * w.length), mm);
+        }
+        let minus_sum = |one: Block<D>, other: Block<D>| plus(plus(zero(), -1.0, one), -1.0, other);
+        let (ub, bw) = (minus_sum(uu, uw), minus_sum(uw, ww));
+        let hinge = minus_sum(ub, bw);
+        [
+            (self.a, self.a, uu),
+            (self.a, self.b, ub),
+            (self.a, self.c, uw),
+            (self.b, self.b, hinge),
+            (self.b, self.c, bw),
+            (self.c, self.c, ww),
+        ]
     }
 
     fn rate<const D: usize>(motion: Motion<'_, D>, gradient: &[(ParticleId, Point<D>); 3]) -> f64 {
@@ -208,31 +246,47 @@ impl Acts for TorsionSpring {
         // The damper also depends on q through ∇θ. This part is not symmetric and is left out; Newton's method
         // converges without it.
         let torque = self.stiffness * bend.delta + self.damping * Self::rate(motion, &gradient);
-        let (mut uu, mut ww, mut uw) = (zero(), zero(), zero());
-        uu = plus(uu, torque, bend.u.curvature());
-        ww = plus(ww, torque, bend.w.curvature());
-        if D == 3 {
-            let (u, w) = (&bend.u, &bend.w);
-            // m mᵀ = I − û ûᵀ − n_u n_uᵀ.
-            let mm = plus(diagonal(1.0), -1.0, outer(1.0, u.along, u.along));
-            let mm = plus(mm, -1.0, outer(1.0, u.across, u.across));
-            uu = plus(uu, self.stiffness * bend.by_tangent / (u.length * u.length), mm);
-            ww = plus(ww, self.stiffness * bend.by_tangent / (w.length * w.length), mm);
-            uw = plus(uw, -self.stiffness * bend.by_sine / (u.length * w.length), mm);
-        }
-        let minus_sum = |one: Block<D>, other: Block<D>| plus(plus(zero(), -1.0, one), -1.0, other);
-        let (ub, bw) = (minus_sum(uu, uw), minus_sum(uw, ww));
-        let hinge = minus_sum(ub, bw);
-        let blocks = [
-            (self.a, self.a, uu),
-            (self.a, self.b, ub),
-            (self.a, self.c, uw),
-            (self.b, self.b, hinge),
-            (self.b, self.c, bw),
-            (self.c, self.c, ww),
-        ];
-        for (first, second, block) in blocks {
+        let aside = [self.stiffness * bend.by_tangent, self.stiffness * bend.by_sine];
+        for (first, second, block) in self.curvature(&bend, torque, aside) {
             visit(first, second, Stiffness::Indefinite(block));
+        }
+    }
+
+    fn linearize<const D: usize>(
+        &self,
+        motion: Motion<'_, D>,
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        let Some(bend) = self.bend(motion) else { return };
+        let gradient = self.gradient(&bend);
+        let rate = Self::rate(motion, &gradient);
+        // ∇²θ v, from the blocks of ∇²θ.
+        let mut turning = gradient.map(|(id, _)| (id, [0.0; D]));
+        let curvature = self
+            .curvature(&bend, 1.0, [bend.cotangent, bend.cosecant])
+            .map(|(first, second, block)| (first, second, Stiffness::Indefinite(block)));
+        for (first, second, block) in &curvature {
+            block.blocks((*first, *second), &mut |row, column, block| {
+                for (_, sum) in turning.iter_mut().filter(|(id, _)| *id == row) {
+                    *sum = plus_scaled(*sum, 1.0, times(&block, motion.v(column)));
+                }
+            });
+        }
+        for (i, g) in gradient {
+            for ((j, other), (_, turning)) in gradient.into_iter().zip(turning) {
+                let slope = plus_scaled(scaled(self.stiffness, other), self.damping, turning);
+                visit(i, j, outer(1.0, g, slope), outer(self.damping, g, other));
+            }
+        }
+        let damper = self.damping * rate;
+        let aside = [
+            self.stiffness * bend.by_tangent + damper * bend.cotangent,
+            self.stiffness * bend.by_sine + damper * bend.cosecant,
+        ];
+        for (first, second, block) in self.curvature(&bend, self.stiffness * bend.delta + damper, aside) {
+            Stiffness::Indefinite(block).blocks((first, second), &mut |row, column, block| {
+                visit(row, column, block, zero());
+            });
         }
     }
 

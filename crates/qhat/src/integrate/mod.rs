@@ -5,6 +5,7 @@
 //! | `fixed/` | steps of exactly h: Euler, semi-implicit Euler, RK4 |
 //! | `adaptive/` | substeps by an error estimate: the frame loop, and the pairs DOPRI5 and DOP853 |
 //! | `implicit/` | steps solved at their end: backward Euler, BDF2 |
+//! | `radau/` | substeps solved at their end, by an error estimate: Radau IIA of order 5 |
 //! | `events/` | the pairs on a system with contacts: substeps that end at events |
 //!
 //! `rattle.rs` is RATTLE in the frame loop, `auto.rs` chooses between DOP853 and BDF2, `projection.rs` makes a start
@@ -23,6 +24,7 @@ mod fixed;
 mod frame;
 mod implicit;
 mod projection;
+mod radau;
 mod rattle;
 mod reading;
 mod runge_kutta;
@@ -80,6 +82,7 @@ pub(crate) fn step_for(
         Integrator::Rattle => rattle::frame::<D>(frame, state),
         Integrator::Dopri5 => pair_frame::frame::<D>(&dopri5::DOPRI5, frame, state),
         Integrator::Dop853 => pair_frame::frame::<D>(&dop853::DOP853, frame, state),
+        Integrator::Radau5 => radau::frame::<D>(frame, state),
         Integrator::Implicit => implicit::frame::<D>(&implicit::backward_euler::BACKWARD_EULER, frame, state),
         Integrator::Bdf2 => implicit::frame::<D>(&implicit::bdf2::BDF2, frame, state),
     })?;

@@ -3,7 +3,7 @@
 use super::reading::Reading;
 use super::runge_kutta::Stages;
 use super::watch::TensionWatch;
-use super::{implicit, rattle};
+use super::{implicit, radau, rattle};
 use crate::chains::Chains;
 use crate::multiplier::Equation;
 use crate::space::in_dimension;
@@ -26,6 +26,7 @@ pub struct Workspace {
     pub(super) implicit: Option<Box<implicit::Scratch>>,
     /// The arrays for the share of redundant rows, for readers of λ and tension.
     pub(super) reading: Reading,
+    pub(super) radau: Option<Box<radau::Scratch>>,
     /// The record of the largest tension of a frame, if it is to be recorded. A frame loop takes it for the time that
     /// the loop runs, and puts it back.
     pub(super) watch: Option<TensionWatch>,
@@ -45,6 +46,7 @@ impl Workspace {
             rattle: rattle::Scratch::new(system),
             implicit: None,
             reading: Reading::default(),
+            radau: None,
             watch: None,
         }
     }

@@ -1,5 +1,5 @@
-//! Symmetric matrices and their LDLᵀ factorization. Nothing here refers to physics, and code that is less readable for
-//! the sake of speed stays in this folder.
+//! Symmetric matrices and their LDLᵀ factorization, and LU of others (`lu.rs`). Nothing here refers to physics, and
+//! code that is less readable for the sake of speed stays in this folder.
 //!
 //! Every operation is a plain f64 operation in a fixed order, so native and wasm results agree bit for bit.
 
@@ -15,9 +15,11 @@ mod hubs;
 mod incidence;
 mod kernel;
 mod leaf_to_root;
+mod lu;
 mod multifrontal;
 mod ordering;
 mod plan;
+mod scalar;
 mod simplicial;
 mod small_pivots;
 mod symmetric;
@@ -28,8 +30,10 @@ pub(crate) use block_ldl::BlockLdl;
 pub(crate) use hubs::Hubs;
 pub(crate) use incidence::Incidence;
 pub(crate) use leaf_to_root::{ForestEdge, LeafToRoot, NONE, Saddle};
+pub(crate) use lu::{Lu, LuPlan, Unknown};
 pub use plan::{Component, ComponentKind, FactorMethod};
 pub(crate) use plan::{EliminationPlan, components};
+pub(crate) use scalar::{Complex, Scalar};
 pub(crate) use small_pivots::SmallPivots;
 pub use symmetric::SymmetricMatrix;
 pub(crate) use symmetric::{Lower, OuterProducts, Pattern};

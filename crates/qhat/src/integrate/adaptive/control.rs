@@ -84,6 +84,25 @@ impl RowSums {
     }
 }
 
+/// Bounds on the rates of the applied forces [1/s]: that of an oscillation, √ of the largest w Σ |K|, and that of a
+/// decay, the largest w Σ of the damping.
+pub(crate) fn rates_of_forces<const D: usize>(system: &System, motion: Motion<'_, D>) -> [f64; 2] {
+    // Most systems have gravity alone, which has no rate: they need no arrays.
+    let mut sums: Vec<[f64; 2]> = Vec::new();
+    for force in system.all_forces() {
+        force.stiffness(motion, &mut |particle, stiffness, damping| {
+            sums.resize(system.particle_count(), [0.0; 2]);
+            sums[particle.0][0] += stiffness;
+            sums[particle.0][1] += damping;
+        });
+    }
+    let mut largest = [0.0_f64; 2];
+    for (sums, w) in sums.iter().zip(&system.inverse_mass) {
+        largest = [largest[0].max(w * sums[0]), largest[1].max(w * sums[1])];
+    }
+    [largest[0].sqrt(), largest[1]]
+}
+
 /// Part of the way to the tolerance that one change of h goes, in logarithms. Near the bound of stability an estimate
 /// answers to h more steeply than its order says, and the whole way there and back costs a rejected substep each
 /// time.

@@ -22,7 +22,7 @@ use crate::drift::Drift;
 use crate::error::StepError;
 use crate::multiplier::Equation;
 use crate::point::Motion;
-use crate::settings::Feedback;
+use crate::settings::{Feedback, Settings};
 use crate::state::{Carry, State};
 use crate::system::System;
 
@@ -45,6 +45,11 @@ pub(crate) trait Stepper {
 
     /// Tries one substep of h, which brings t to `end`. A substep whose error is not accepted need not be finished.
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome;
+
+    /// The factor from the length of this substep to that of the next.
+    fn growth(&self, attempt: &Attempt, settings: &Settings) -> f64 {
+        control::growth(attempt.error, settings.tolerance, self.estimate_order())
+    }
 
     /// Makes the substep tried last the motion at hand; h is its length. Returns its drift from C = 0 and Ċ = 0.
     fn keep(&mut self, state: &mut State, h: f64) -> Drift;

@@ -13,13 +13,13 @@ use crate::state::State;
 use crate::system::System;
 
 /// Part of the extent of the system below which the way of the fastest particle in one substep counts as rest.
-const AT_REST: f64 = 1e-3;
+pub(crate) const AT_REST: f64 = 1e-3;
 
 /// Factor on the error estimate, which is a mean over all coordinates, while a large error may be in a few. With this
 /// factor and the default tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100
 /// and 1000 links. At a tolerance of 1e-3 its substeps run against the bound of stability: a chain of 1000 links takes
 /// 1588 of them in place of 830 (`benches/results/workloads.csv`).
-const ERROR_SCALE: f64 = 4.0;
+pub(crate) const ERROR_SCALE: f64 = 4.0;
 
 /// A method with an error estimate.
 #[derive(Debug)]

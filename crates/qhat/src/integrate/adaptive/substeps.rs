@@ -2,7 +2,7 @@
 
 use super::acceptance::{Refusal, accepts};
 use super::pace::{Pace, Steady};
-use super::{Attempt, Outcome, Stepper, control};
+use super::{Attempt, Outcome, Stepper};
 use crate::drift::{Drift, attainable, worst_row};
 use crate::energy;
 use crate::error::StepError;
@@ -177,7 +177,7 @@ impl<'a> Substeps<'a> {
             Outcome::Met(attempt) if attempt.error.is_nan() => return Ok(Verdict::Rejected { growth: HALF }),
             Outcome::Met(attempt) => attempt,
         };
-        let growth = control::growth(attempt.error, self.settings.tolerance, method.estimate_order());
+        let growth = method.growth(&attempt, self.settings);
         let is_accepted = accepts(attempt.error, self.settings);
         Ok(if is_accepted { Verdict::Accepted { attempt, growth } } else { Verdict::Rejected { growth } })
     }
@@ -308,7 +308,8 @@ impl<'a> Substeps<'a> {
             Pace::Free(next) => (next, SteadyMemory::default()),
             Pace::Steady(steady) => (steady.allowed, steady.memory),
         };
-        state.carry = Some(Carry { lambda, substep, steady, is_nearly_singular, previous: None, drives, resting: 0 });
+        let carry = Carry { lambda, substep, steady, is_nearly_singular, drives, ..Carry::default() };
+        state.carry = Some(carry);
         self.report.energy = energy::energy(self.system, state);
         self.report
     }

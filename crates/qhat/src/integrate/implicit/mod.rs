@@ -34,7 +34,7 @@ use crate::multiplier::APPROACH;
 use crate::point::{Motion, largest};
 use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Integrator};
-use crate::state::{Carry, Previous, State, SteadyMemory};
+use crate::state::{Carry, Previous, State};
 use crate::system::System;
 use graph::check_couplings;
 use newton::{Ending, Newton, Tried};
@@ -101,9 +101,7 @@ pub(crate) fn frame<const D: usize>(
         let lambda = equation.lambda.clone();
         state.rank.clone_from(&equation.rank);
         let drives = energy::drive_power(system, &equation.rows.Ct, &lambda);
-        let steady = SteadyMemory::default();
-        state.carry =
-            Some(Carry { lambda, substep: length, steady, is_nearly_singular, previous: None, drives, resting: 0 });
+        state.carry = Some(Carry { lambda, substep: length, is_nearly_singular, drives, ..Carry::default() });
     }
     frame.workspace.set_modes(system, state);
     frame.workspace.equation.solver.memory.forget();
@@ -235,6 +233,7 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             state.work.drives += h * mean(carry.drives, drives);
             carry.drives = drives;
             carry.substep = h;
+            carry.collocation = None;
             let previous = carry.previous.get_or_insert_with(|| Previous { q: Vec::new(), qd: Vec::new(), h });
             previous.q.clone_from(&workspace.q);
             previous.qd.clone_from(&workspace.qd);

@@ -1,0 +1,383 @@
+//! One substep of Radau IIA: stages, error estimate, projection, and the next length.
+
+use super::Scratch;
+use super::stages::{Convergence, MOST_ITERATIONS, Stages, Step};
+use super::tableau::{A, ESTIMATE, REAL, combine};
+use crate::drift::{Drift, attainable, drift, worst_row};
+use crate::energy;
+use crate::integrate::adaptive::pair::{AT_REST, ERROR_SCALE};
+use crate::integrate::adaptive::{Attempt, Outcome, Stepper, accepts};
+use crate::point::{Motion, largest};
+use crate::settings::Settings;
+use crate::state::{Collocation, State};
+use crate::system::System;
+
+/// Iterations of one projection. The constraints are off by the error of the step, and the factor belongs to its start:
+/// each iteration gains some two digits.
+const MOST_PROJECTIONS: usize = 8;
+
+/// Ratio of two residuals of a projection from which on a matrix of the end of the step takes its place.
+const DULL: f64 = 0.05;
+
+/// |Ċ|, relative to the speed of the fastest particle over the extent, below which it is roundoff.
+const CONSISTENT: f64 = 1e-13;
+
+/// Rate of convergence above which the next substep has a matrix of its own.
+const SLOW: f64 = 1e-3;
+
+/// Part of the length at which the error would be one tolerance.
+const SAFE: f64 = 0.9;
+
+/// A substep that would grow by less than this keeps its length, and with it its factors.
+const KEPT: f64 = 1.1;
+
+/// Rate of convergence to which the next substep may lead.
+const CONVERGENT: f64 = 0.3;
+
+/// The factor by which a substep grows at most, and shrinks at least.
+const GROWTH: f64 = 8.0;
+const SHRINKAGE: f64 = 0.1;
+
+/// Ratio of lengths up to which the polynomials of the last substep are a guess for the next.
+const ONWARDS: f64 = 3.0;
+
+/// Radau IIA under way over one frame.
+pub(super) struct RadauStepper<'a, const D: usize> {
+    pub(super) system: &'a System,
+    pub(super) settings: &'a Settings,
+    pub(super) scratch: &'a mut Scratch,
+    /// λ at the start of the substep, by the rows of the system.
+    pub(super) lambda: Vec<f64>,
+    /// What the last substep left for the next.
+    pub(super) before: Option<Collocation>,
+    /// Whether a matrix is at hand, and whether it is one of this substep; whether one of the end of the substep tried
+    /// last was made.
+    pub(super) is_linearized: bool,
+    pub(super) is_fresh: bool,
+    pub(super) is_ahead: bool,
+    /// The length for which they are factored [s].
+    pub(super) factored_for: Option<f64>,
+    /// Whether the substep tried last was rejected.
+    pub(super) was_rejected: bool,
+    pub(super) convergence: Convergence,
+    /// The error of the substep tried last.
+    pub(super) error: f64,
+}
+
+impl<const D: usize> Stepper for RadauStepper<'_, D> {
+    fn estimate_order(&self) -> f64 {
+        4.0
+    }
+
+    fn longest(&mut self, _: &State) -> f64 {
+        f64::INFINITY
+    }
+
+    fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
+        let step = Step { system: self.system, settings: self.settings, state, h, end };
+        if !self.solve(&step) {
+            return Outcome::NotMet;
+        }
+        self.error = self.error(&step);
+        if !self.error.is_finite() {
+            return Outcome::NotMet;
+        }
+        let iterations = self.convergence.iterations;
+        let mut attempt = Attempt { h, error: self.error, iterations, dissipation: 0.0, drives: 0.0 };
+        if !accepts(self.error, self.settings) {
+            return Outcome::Met(attempt);
+        }
+        self.add_work(&step, &mut attempt);
+        match self.project(&step) {
+            Some(iterations) => {
+                attempt.iterations += iterations;
+                Outcome::Met(attempt)
+            }
+            None => Outcome::NotMet,
+        }
+    }
+
+    fn keep(&mut self, state: &mut State, h: f64) -> Drift {
+        let stages = &mut self.scratch.stages;
+        std::mem::swap(&mut state.q, &mut stages.q);
+        std::mem::swap(&mut state.qd, &mut stages.qd);
+        self.lambda.copy_from_slice(&stages.lambda);
+        let mut collocation = self.before.take().unwrap_or_default();
+        collocation.stages.clear();
+        stages.z.iter().for_each(|z| collocation.stages.extend(z));
+        (collocation.h, collocation.error) = (h, self.error);
+        self.before = Some(collocation);
+        self.is_fresh = false;
+        // A matrix of the end of the step serves the next one.
+        self.is_linearized = self.is_ahead || !self.is_slow();
+        self.was_rejected = false;
+        drift::<D>(self.system, &self.scratch.stages.rows, &[], &state.q)
+    }
+
+    fn turn_back(&mut self, _: &State) {
+        self.was_rejected = true;
+    }
+
+    fn end(&mut self, _: &mut State) {}
+
+    fn write_tried(&self, state: &mut State) {
+        state.q.copy_from_slice(&self.scratch.stages.q);
+        state.qd.copy_from_slice(&self.scratch.stages.qd);
+    }
+
+    /// Towards an error of one tolerance, with the trend of the last two errors (Gustafsson's predictive controller);
+    /// more carefully the more iterations were needed, and not at all where the factors can then stay.
+    fn growth(&self, attempt: &Attempt, settings: &Settings) -> f64 {
+        let tolerance = settings.tolerance;
+        let most = 2 * MOST_ITERATIONS + 1;
+        let safe = SAFE * most as f64 / (most - 1 + self.convergence.iterations) as f64;
+        let error = (attempt.error / tolerance).max(f64::MIN_POSITIVE);
+        let mut growth = fourth_root(1.0 / error);
+        if !accepts(attempt.error, self.settings) {
+            return (safe * growth).clamp(SHRINKAGE, SAFE);
+        }
+        if let Some(before) = &self.before {
+            // Errors of almost nothing tell no trend.
+            let last = (before.error / tolerance).max(1e-2);
+            growth = growth.min(attempt.h / before.h * fourth_root(last / error) * growth);
+        }
+        // The rate grows about as the square of h; the iteration should not be what rejects the next substep.
+        let convergent = (CONVERGENT / self.convergence.rate).sqrt().max(1.0);
+        let most = if self.was_rejected { 1.0 } else { GROWTH.min(convergent) };
+        let growth = (safe * growth).clamp(SHRINKAGE, most);
+        if (1.0..KEPT).contains(&growth) && !self.is_slow() { 1.0 } else { growth }
+    }
+}
+
+impl<const D: usize> RadauStepper<'_, D> {
+    /// Whether the matrix at hand served the last substep badly.
+    fn is_slow(&self) -> bool {
+        self.convergence.iterations > 2 && self.convergence.rate > SLOW
+    }
+
+    /// Solves for the stages. Whether the iteration converged.
+    fn solve(&mut self, step: &Step<'_>) -> bool {
+        loop {
+            self.guess(step);
+            if !self.is_linearized {
+                self.linearize(step);
+            }
+            let Scratch { saddle, factors, stages, .. } = &mut *self.scratch;
+            if self.factored_for != Some(step.h) {
+                self.factored_for = None;
+                if factors.factor::<D>(saddle, step.h) {
+                    self.factored_for = Some(step.h);
+                }
+            }
+            if self.factored_for.is_some() {
+                let at_rest = AT_REST * step.system.extent / step.h;
+                self.convergence = stages.solve::<D>(step, saddle, factors, |stages| {
+                    let speed = stages.speed(step, saddle, at_rest);
+                    ERROR_SCALE * (1.0 / speed).max(step.h / step.system.extent)
+                });
+                if self.convergence.is_met {
+                    return true;
+                }
+            }
+            if self.is_fresh {
+                self.is_linearized = false;
+                return false;
+            }
+            self.is_linearized = false;
+        }
+    }
+
+    /// The first guess of the stages.
+    fn guess(&mut self, step: &Step<'_>) {
+        let Scratch { saddle, stages, .. } = &mut *self.scratch;
+        match &self.before {
+            Some(before) if step.h <= ONWARDS * before.h && before.stages.len() == 3 * saddle.unknowns() => {
+                stages.guess_onwards(saddle, &before.stages, step.h / before.h);
+            }
+            _ => stages.guess_rest(saddle, &self.lambda),
+        }
+    }
+
+    /// K, B, J and J̇ at the second stage as it is guessed, two thirds of the way. Where a stiff spring turns by φ from
+    /// there to a stage, the iteration converges like φ² times its stiffness; from the start φ would be twice as large.
+    fn linearize(&mut self, step: &Step<'_>) {
+        let Scratch { saddle, stages, .. } = &mut *self.scratch;
+        stages.motion::<D>(step, saddle, 1);
+        let t = step.time(1);
+        stages.evaluate_rows::<D>(self.system, t);
+        let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t };
+        saddle.linearize(self.system, motion, &stages.rows, &stages.lambda);
+        (self.is_linearized, self.is_fresh, self.factored_for) = (true, true, None);
+    }
+
+    /// The error estimate, in the unit of the tolerance: (γ/h − ∂f/∂y)⁻¹ (f(y₀) + Σ e_i z_i/h) of positions and
+    /// velocities, on (J q̇)' = 0. Where the estimate is too large at a start or after a rejected substep, f is taken
+    /// once more at y₀ plus the estimate: what a stiff force does to it then falls away.
+    fn error(&mut self, step: &Step<'_>) -> f64 {
+        let Scratch { saddle, stages, tried_q, tried_qd, .. } = &mut *self.scratch;
+        tried_q.copy_from_slice(&step.state.q);
+        tried_qd.copy_from_slice(&step.state.qd);
+        let speed = stages.speed(step, saddle, AT_REST * step.system.extent / step.h);
+        let error = self.estimate(step, speed);
+        if accepts(error, self.settings) || !(self.was_rejected || self.before.is_none()) {
+            return error;
+        }
+        let Scratch { saddle, error_q, error_qd, tried_q, tried_qd, .. } = &mut *self.scratch;
+        for (node, id) in saddle.particle.iter().enumerate() {
+            for k in 0..D {
+                tried_q[id.0 * D + k] += error_q[node * D + k];
+                tried_qd[id.0 * D + k] += error_qd[node * D + k];
+            }
+        }
+        self.estimate(step, speed)
+    }
+
+    /// The estimate with f at the motion in `tried_q` and `tried_qd`.
+    fn estimate(&mut self, step: &Step<'_>, speed: f64) -> f64 {
+        let Scratch { saddle, factors, stages, tried_q, tried_qd, error_q, error_qd, rhs } = &mut *self.scratch;
+        let (h, velocities) = (step.h, saddle.velocities());
+        stages.q.copy_from_slice(tried_q);
+        stages.qd.copy_from_slice(tried_qd);
+        stages.lambda.copy_from_slice(&self.lambda);
+        stages.evaluate::<D>(self.system, saddle, step.state.t, 0);
+        // Σ e_i z_i/h of positions is Σ e_i a_ij z_j − q̇₀, since Σ e_i c_i = −1.
+        let of_positions: [f64; 3] = std::array::from_fn(|j| combine(&ESTIMATE, [A[0][j], A[1][j], A[2][j]]));
+        for u in 0..velocities {
+            let z = [stages.z[0][u], stages.z[1][u], stages.z[2][u]];
+            error_q[u] = combine(&of_positions, z);
+            error_qd[u] = stages.evaluated(0)[u] + saddle.mass[u / D] * combine(&ESTIMATE, z) / h;
+        }
+        for (node, id) in saddle.particle.iter().enumerate() {
+            for k in 0..D {
+                error_q[node * D + k] += tried_qd[id.0 * D + k] - step.state.qd[id.0 * D + k];
+            }
+        }
+        let per = h / REAL;
+        saddle.stiffness_times::<D>(error_q, rhs);
+        saddle.turning_times::<D>(error_q, &mut rhs[velocities..]);
+        for u in 0..velocities {
+            error_qd[u] = per * (error_qd[u] - per * rhs[u]);
+        }
+        for u in velocities..saddle.unknowns() {
+            error_qd[u] = -per * rhs[u];
+        }
+        factors.solve(saddle, error_qd);
+        let (mut squares_q, mut squares_qd) = (0.0, 0.0);
+        for u in 0..velocities {
+            error_q[u] = per * (error_qd[u] + error_q[u]);
+            squares_q += error_q[u] * error_q[u];
+            squares_qd += error_qd[u] * error_qd[u];
+        }
+        let coordinates = self.system.coordinate_count().max(1) as f64;
+        let [q, qd] = [squares_q, squares_qd].map(|sum| (sum / coordinates).sqrt());
+        let (q, qd) = (q / self.system.extent, qd / speed);
+        ERROR_SCALE * if q.is_nan() { q } else { qd.max(q) }
+    }
+
+    /// Work of forces without a potential and of drives, by the quadrature of the method.
+    fn add_work(&mut self, step: &Step<'_>, attempt: &mut Attempt) {
+        let Scratch { saddle, stages, .. } = &mut *self.scratch;
+        for i in 0..3 {
+            stages.motion::<D>(step, saddle, i);
+            let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.time(i) };
+            attempt.dissipation += step.h * A[2][i] * energy::dissipation(self.system, motion);
+            if stages.is_driven {
+                self.system.evaluate_rows(motion, &mut stages.rows);
+                let power = energy::drive_power(self.system, &stages.rows.Ct, &stages.lambda);
+                attempt.drives += step.h * A[2][i] * power;
+            }
+        }
+    }
+
+    /// Moves the last stage onto C = 0 and then Ċ = 0, in the metric of the step's own real matrix: a particle on a
+    /// stiff spring then hardly moves along it. Its iterations, or `None` if that was not possible.
+    fn project(&mut self, step: &Step<'_>) -> Option<usize> {
+        let (system, mut iterations, mut last) = (self.system, 0, f64::INFINITY);
+        self.is_ahead = false;
+        loop {
+            let Scratch { saddle, stages, rhs, .. } = &mut *self.scratch;
+            stages.evaluate_rows::<D>(system, step.end);
+            let off = worst_row(system, &stages.rows.C).1;
+            if off <= attainable(system, self.settings, largest(&stages.q)) {
+                break;
+            }
+            if off.is_infinite() || iterations == MOST_PROJECTIONS {
+                return None;
+            }
+            for (rhs, &row) in rhs[saddle.velocities()..].iter_mut().zip(&saddle.rows) {
+                *rhs = -stages.rows.C[row];
+            }
+            self.correct(step, off > DULL * last)?.add_to(|stages| &mut stages.q);
+            (last, iterations) = (off, iterations + 1);
+        }
+        last = f64::INFINITY;
+        for _ in 0..MOST_PROJECTIONS {
+            let Scratch { saddle, stages, rhs, .. } = &mut *self.scratch;
+            let mut off = 0.0_f64;
+            for (rhs, &row) in rhs[saddle.velocities()..].iter_mut().zip(&saddle.rows) {
+                let rate = stages.rows.J.multiply_row::<D>(row, &stages.qd) + stages.rows.Ct[row];
+                off = off.max(rate.abs() / system.row_scale[row]);
+                *rhs = -rate;
+            }
+            if off * system.extent <= CONSISTENT * largest(&stages.qd) {
+                break;
+            }
+            self.correct(step, off > DULL * last)?.add_to(|stages| &mut stages.qd);
+            last = off;
+        }
+        self.scratch.stages.evaluate_rows::<D>(system, step.end);
+        Some(iterations)
+    }
+
+    /// Solves for the right-hand side at hand, of the rows alone. If the matrix `is_dull`, a matrix of the end of the
+    /// step is made first, once. `None` where it cannot be factored.
+    fn correct(&mut self, step: &Step<'_>, is_dull: bool) -> Option<Correction<'_, D>> {
+        let Scratch { saddle, factors, stages, rhs, .. } = &mut *self.scratch;
+        if is_dull && !self.is_ahead {
+            let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.end };
+            saddle.linearize(self.system, motion, &stages.rows, &stages.lambda);
+            (self.is_ahead, self.is_linearized, self.factored_for) = (true, false, None);
+            if !factors.factor_real::<D>(saddle, step.h) {
+                return None;
+            }
+        }
+        rhs[..saddle.velocities()].fill(0.0);
+        factors.solve(saddle, rhs);
+        Some(Correction { scratch: self.scratch })
+    }
+}
+
+/// A change of positions or velocities, as the right-hand side of a [`Scratch`] has it after a solve.
+struct Correction<'a, const D: usize> {
+    scratch: &'a mut Scratch,
+}
+
+impl<const D: usize> Correction<'_, D> {
+    fn add_to(self, which: impl Fn(&mut Stages) -> &mut Vec<f64>) {
+        let Scratch { saddle, stages, rhs, .. } = self.scratch;
+        let to = which(stages);
+        for (node, id) in saddle.particle.iter().enumerate() {
+            for k in 0..D {
+                to[id.0 * D + k] += rhs[node * D + k];
+            }
+        }
+    }
+}
+
+/// x^¼, of square roots, which round alike everywhere.
+fn fourth_root(x: f64) -> f64 {
+    x.sqrt().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::radau::tableau::C;
+
+    /// Σ e_i z_i/h of positions needs Σ e_i c_i = −1.
+    #[test]
+    fn the_estimate_of_positions_has_no_part_of_the_velocity() {
+        let sum: f64 = ESTIMATE.iter().zip(C).map(|(e, c)| e * c).sum();
+        assert!((sum + 1.0).abs() < 1e-14, "{sum}");
+    }
+}
