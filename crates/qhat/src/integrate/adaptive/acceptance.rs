@@ -44,6 +44,6 @@ pub(crate) fn accepts(error: f64, settings: &Settings) -> bool {
 
 /// Whether a projection may move a motion by this much, relative to the extent and to the fastest speed like the error
 /// estimate.
-pub(super) fn accepts_move(moved: f64, settings: &Settings) -> bool {
+pub(crate) fn accepts_move(moved: f64, settings: &Settings) -> bool {
     moved <= MOVED * settings.tolerance.max(settings.constraint_tolerance)
 }

@@ -14,7 +14,7 @@ pub(crate) mod pair;
 pub(crate) mod pair_frame;
 mod substeps;
 
-pub(crate) use acceptance::{Refusal, accepts};
+pub(crate) use acceptance::{Refusal, accepts, accepts_move};
 pub(crate) use substeps::{End, Substeps};
 
 use super::frame::Frame;

@@ -102,6 +102,7 @@ pub(crate) fn carry_on<const D: usize>(
             (equation.lambda.clone(), None)
         }
     };
+    scratch.stages.rows.feet.clone_from(&frame.workspace.equation.rows.feet);
     scratch.saddle.leave_out(state.rank.as_ref().map_or(&[], |rank| &rank.dependent));
     substeps.report.solver = Solver::EndOfStep;
     let factorizations = scratch.factors.factorizations;

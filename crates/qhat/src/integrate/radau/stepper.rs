@@ -6,7 +6,8 @@ use super::tableau::{A, ESTIMATE, REAL, combine};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::integrate::adaptive::pair::{AT_REST, ERROR_SCALE};
-use crate::integrate::adaptive::{Attempt, Outcome, Stepper, accepts};
+use crate::integrate::adaptive::{Attempt, Outcome, Refusal, Stepper, accepts, accepts_move};
+use crate::integrate::edges::Passage;
 use crate::point::{Motion, largest};
 use crate::settings::Settings;
 use crate::state::{Collocation, State};
@@ -88,7 +89,12 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
             return Outcome::Met(attempt);
         }
         self.add_work(&step, &mut attempt);
+        let Scratch { stages, tried_q, tried_qd, .. } = &mut *self.scratch;
+        tried_q.copy_from_slice(&stages.q);
+        tried_qd.copy_from_slice(&stages.qd);
         match self.project(&step) {
+            Some(_) if self.passes_an_edge(&step) => Outcome::NotMet,
+            Some(_) if !accepts_move(self.moved(h), self.settings) => Outcome::Refused(Refusal::Jump),
             Some(iterations) => {
                 attempt.iterations += iterations;
                 Outcome::Met(attempt)
@@ -102,6 +108,12 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
         std::mem::swap(&mut state.q, &mut stages.q);
         std::mem::swap(&mut state.qd, &mut stages.qd);
         self.lambda.copy_from_slice(&stages.lambda);
+        if !self.system.bead_places.is_empty() {
+            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t + h };
+            stages.rows.feet.follow(&self.system.beads(), motion);
+            state.feet.clear();
+            state.feet.extend_from_slice(stages.rows.feet.parameters());
+        }
         let mut collocation = self.before.take().unwrap_or_default();
         collocation.stages.clear();
         stages.z.iter().for_each(|z| collocation.stages.extend(z));
@@ -287,6 +299,31 @@ impl<const D: usize> RadauStepper<'_, D> {
                 attempt.drives += step.h * A[2][i] * power;
             }
         }
+    }
+
+    /// The way that the projection moved the motion, in the norm of the error estimate of the pairs.
+    fn moved(&self, h: f64) -> f64 {
+        let Scratch { stages, tried_q, tried_qd, .. } = &*self.scratch;
+        let mean = |to: &[f64], from: &[f64]| {
+            let sum: f64 = to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
+            (sum / to.len().max(1) as f64).sqrt()
+        };
+        let speed = largest(&stages.qd).max(AT_REST * self.system.extent / h);
+        let [q, qd] = [mean(&stages.q, tried_q) / self.system.extent, mean(&stages.qd, tried_qd) / speed];
+        if q.is_nan() || qd.is_nan() { f64::NAN } else { q.max(qd) }
+    }
+
+    /// Whether the step leads over a place that no substep may pass.
+    fn passes_an_edge(&self, step: &Step<'_>) -> bool {
+        let (system, state) = (self.system, step.state);
+        if system.jumpy.is_empty() && system.bead_places.is_empty() {
+            return false;
+        }
+        let Stages { rows, q, qd, .. } = &self.scratch.stages;
+        let before = &system.rows_at::<D>(state).J.blocks;
+        let from = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        let to = Motion::<D> { q, qd, t: step.end };
+        Passage { system, rows, inactive: &[], before, from, to }.is_barred()
     }
 
     /// Moves the last stage onto C = 0 and then Ċ = 0, in the metric of the step's own real matrix: a particle on a
