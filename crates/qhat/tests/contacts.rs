@@ -288,8 +288,8 @@ fn a_blow_that_is_shared_is_told() {
     assert!([0.0, 0.0, 1.0].iter().zip(&v).all(|(expected, v)| (v - expected).abs() < 1e-12), "{v:?}");
 }
 
-/// 10 kg that fall a metre into a rope stop with an impulse of m √(2 g h). A rope that bears it stops them; a weaker one
-/// breaks, and the load falls on as if there were no rope.
+/// 10 kg that fall a metre into a rope stop with an impulse of m √(2 g h). A rope that bears it stops them; a weaker
+/// one breaks, and the load falls on as if there were no rope.
 #[test]
 fn a_jerk_breaks_what_its_impulse_is_too_large_for() {
     let impulse = 10.0 * (2.0 * G).sqrt();

@@ -33,8 +33,8 @@ fn acceleration_of_C(terms: &Terms) -> Vec<f64> {
     Jqdd.iter().zip(&terms.acceleration_bias).map(|(a, b)| a + b).collect()
 }
 
-/// The roundoff that is allowed in C̈: 1e-13 of the largest of its terms |b|, |A| |λ| and |J| |q̈|, each with some dozens
-/// of roundings.
+/// The roundoff that is allowed in C̈: 1e-13 of the largest of its terms |b|, |A| |λ| and |J| |q̈|, each with some
+/// dozens of roundings.
 fn roundoff(terms: &Terms) -> f64 {
     let absolute = |x: &[f64]| x.iter().map(|x| x.abs()).collect::<Vec<_>>();
     let Al = multiply(&absolute(&terms.constraint_matrix.to_dense()), &absolute(&terms.multipliers));

@@ -1,5 +1,5 @@
-//! Ctrl-C, and the signals SIGTERM and SIGHUP, which are handled alike: the first ends a run after the current frame, so that the frames reached are kept; the second ends the
-//! process at once.
+//! Ctrl-C, and the signals SIGTERM and SIGHUP, which are handled alike: the first ends a run after the current frame,
+//! so that the frames reached are kept; the second ends the process at once.
 
 use crate::failure::{Failure, INTERRUPTED};
 use std::sync::Arc;

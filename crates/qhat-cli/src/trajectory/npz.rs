@@ -1,8 +1,8 @@
 //! NPZ: a zip with an NPY file for each array, as `numpy.load` reads it, without pickles.
 //!
 //! An NPY file begins with its shape, and the number of frames is known only at the end, because a run may diverge. So
-//! each array grows in a file of its own, and the zip is written at the end. A disk that is full then keeps a part of the
-//! frames.
+//! each array grows in a file of its own, and the zip is written at the end. A disk that is full then keeps a part of
+//! the frames.
 
 use super::npy;
 use super::target::Target;

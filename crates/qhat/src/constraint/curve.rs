@@ -7,9 +7,9 @@
 //!
 //! A curve may cross itself, and a helix goes on beyond its range, so x does not tell on which branch the particle is.
 //! The foot is therefore followed: the search for s* begins where the foot is expected (feet.rs), goes downhill along
-//! |x − c(s)|², and ends at the first minimum. A stride turns c' by no more than [`TURN`], so that it does not leave the
-//! branch. Where no foot is known, the search begins at the nearest of 512 points within the range and stays between
-//! the neighbours of that point. A polyline has its foot in closed form (polyline.rs).
+//! |x − c(s)|², and ends at the first minimum. A stride turns c' by no more than [`TURN`], so that it does not leave
+//! the branch. Where no foot is known, the search begins at the nearest of 512 points within the range and stays
+//! between the neighbours of that point. A polyline has its foot in closed form (polyline.rs).
 //!
 //! Beyond its range a path goes on as its expressions do. A spline or polyline that is not closed ends at its first and
 //! last point. There it goes on straight, so that a substep may look beyond; no substep is kept whose foot is beyond.

@@ -4,8 +4,8 @@
 //! s*(q, t) is sought near s + ṡ (t − t₀)        s, ṡ: the foot and its rate at the start t₀ of the substep
 //! ```
 //!
-//! s is part of the State, and a substep that is kept moves it on. So the rows are a function of q, t and the State, and
-//! a restart gives the same bits.
+//! s is part of the State, and a substep that is kept moves it on. So the rows are a function of q, t and the State,
+//! and a restart gives the same bits.
 
 use super::on_curve::Followed;
 use super::{Constraint, OnCurve};

@@ -10,8 +10,8 @@
 //! −λ is the tension of the rope: a segment of weight w pulls its ends together with −w λ. The constraint is an
 //! equality, so this rope also pushes where λ > 0.
 //!
-//! A segment without length has no direction, and its gradient jumps there: a substep that would pass it is refused, and
-//! the run ends with an error (integrate/edges.rs). At the place itself the gradient is taken as zero. The
+//! A segment without length has no direction, and its gradient jumps there: a substep that would pass it is refused,
+//! and the run ends with an error (integrate/edges.rs). At the place itself the gradient is taken as zero. The
 //! curvature 1/|d| grows without bound as |d| goes to zero, so a load must not be pulled all the way up to its pulley.
 
 use super::arms::Arms;

@@ -157,7 +157,8 @@ impl Polyline {
         }
     }
 
-    /// s*: the first minimum of |x − c|² downhill from `near`, or where that is not known the nearest point of the wire.
+    /// s*: the first minimum of |x − c|² downhill from `near`, or where that is not known the nearest point of the
+    /// wire.
     pub(super) fn foot<const D: usize>(&self, x: Point<D>, near: Option<f64>) -> f64 {
         match near {
             Some(near) => self.foot_near(x, near),

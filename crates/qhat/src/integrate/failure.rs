@@ -105,7 +105,8 @@ pub(super) fn unmet_rate(system: &System, time: f64, rows: &Rows, allowed: f64) 
 /// ```text
 /// e = J q̈ + γ(0) ≠ 0        what the accelerations miss, at rest, in rows that follow from others
 /// r = e − A⁻¹ A e            A⁻¹ over the other rows: Jᵀ r = 0, r·γ(0) = |e|²
-/// r·γ(v) = r·γ(0) + vᵀ (Σ r_i ∂²C_i) v        for a free velocity v, J v = 0: zero for v of some size, if the signs differ
+/// r·γ(v) = r·γ(0) + vᵀ (Σ r_i ∂²C_i) v        for a free velocity v, J v = 0: zero for v of some size, if the
+///                                              signs differ
 /// ```
 pub(super) fn undecided<const D: usize>(
     system: &System,

@@ -29,12 +29,12 @@ const MAX_ITERATIONS: usize = 60;
 /// Halvings of one Newton step.
 const MAX_HALVINGS: usize = 12;
 
-/// Part of the largest |Ċ| before a projection of velocities that it may leave: an A that is nearly singular leaves 1e-6
-/// of it.
+/// Part of the largest |Ċ| before a projection of velocities that it may leave: an A that is nearly singular leaves
+/// 1e-6 of it.
 const UNMET: f64 = 1e-3;
 
-/// |Ċ|, relative to the speed of the fastest particle over the extent, that roundoff of an A that is nearly singular may
-/// leave.
+/// |Ċ|, relative to the speed of the fastest particle over the extent, that roundoff of an A that is nearly singular
+/// may leave.
 const ROUGH: f64 = 1e-6;
 
 /// |Ċ|, relative to the speed of the fastest particle, below which it is roundoff.

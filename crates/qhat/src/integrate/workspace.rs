@@ -55,8 +55,8 @@ impl Workspace {
         &self.equation
     }
 
-    /// Takes the active rows from the modes of a state, the feet of beads, and the rows that follow from others. A factor
-    /// of A without other rows is forgotten.
+    /// Takes the active rows from the modes of a state, the feet of beads, and the rows that follow from others. A
+    /// factor of A without other rows is forgotten.
     pub(crate) fn set_modes(&mut self, system: &System, state: &State) {
         in_dimension!(system.dimension, D => self.equation.place_feet::<D>(system, state));
         if state.rank.is_none() || state.rank != self.equation.rank {

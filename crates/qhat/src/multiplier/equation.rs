@@ -61,13 +61,13 @@ impl Equation {
         self.solve_multipliers::<D>(system); // (A + ε I) λ = b, and F
         self.imbalance = self.imbalance.max(self.solver.imbalance());
         reaction::constraint_forces::<D>(&self.rows.J, &self.lambda, s, &mut self.Q_hat); // Q̂ = s Jᵀ λ
-        self.report_soft_rows(system); // λ of soft rows
         reaction::accelerations::<D>(W, &self.Q, &self.Q_hat, &mut self.qdd); // q̈ = W (Q + Q̂)
         if !self.sliding.is_empty() {
             reaction::add_accelerations::<D>(W, &self.friction.force, &mut self.qdd); // q̈ += W F
         } else if self.solver.growth() > BALANCED {
             self.balance::<D>(system, s);
         }
+        self.report_soft_rows(system); // λ of soft rows, whose forces are in Q already
     }
 
     /// Refines λ by the q̈ that it gives.

@@ -84,8 +84,8 @@ impl Simulation {
     /// Advances by a duration \[s\]: one frame with an adaptive integrator, steps of h with another.
     ///
     /// # Errors
-    /// [`SettingsError::FrameNotMultiple`](crate::SettingsError::FrameNotMultiple) if steps of h do not fill the duration;
-    /// else as [`Simulation::step`].
+    /// [`SettingsError::FrameNotMultiple`](crate::SettingsError::FrameNotMultiple) if steps of h do not fill the
+    /// duration; else as [`Simulation::step`].
     pub fn advance(&mut self, duration: f64) -> Result<StepReport, StepError> {
         let is_adaptive = self.settings.integrator.is_adaptive();
         let (steps, h) = if is_adaptive { (1, duration) } else { (self.settings.steps_in(duration)?, self.settings.h) };

@@ -239,7 +239,8 @@ impl<'a> Substeps<'a> {
         let (system, time) = (self.system, state.t);
         in_dimension!(system.dimension, D => {
             let motion = Motion::<D> { q: &tried.q, qd: &tried.qd, t: end };
-            if let Some(error) = at_an_edge(system, state, motion).or_else(|| without_length::<D>(system, time, &state.q)) {
+            let lost = || without_length::<D>(system, time, &state.q);
+            if let Some(error) = at_an_edge(system, state, motion).or_else(lost) {
                 return error;
             }
             if let Err(error) = check_finite::<D>(system, time, &tried.q, &tried.qd) {

@@ -241,8 +241,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// The error after the shortest step did not converge: the culprit of a gradient that is lost, the worst row, or where
-    /// all rows are met the particle with the largest acceleration.
+    /// The error after the shortest step did not converge: the culprit of a gradient that is lost, the worst row, or
+    /// where all rows are met the particle with the largest acceleration.
     fn failure(&self, state: &State, ending: &Ending) -> StepError {
         let (system, time, workspace) = (self.frame.system, state.t, &*self.frame.workspace);
         if let Some(error) = self.edge(state).or_else(|| without_length::<D>(system, time, &state.q)) {

@@ -217,8 +217,8 @@ impl Component {
     }
 
     /// F where the rows leave no particle any motion: the accelerations are those of the drives,
-    /// J q̈ = −γ − ks C − kd Ċ, and F = M q̈ − Q. At rest F is −Q to the bit, whatever the masses are; Jᵀλ is exact only
-    /// to as many roundoffs of the force on the lightest particle as the heaviest one is heavier.
+    /// J q̈ = −γ − ks C − kd Ċ, and F = M q̈ − Q. At rest F is −Q to the bit, whatever the masses are; Jᵀλ is exact
+    /// only to as many roundoffs of the force on the lightest particle as the heaviest one is heavier.
     fn improve_force<const D: usize>(
         &self,
         rows: &RowsToShare<'_>,
