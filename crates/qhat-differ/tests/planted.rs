@@ -28,7 +28,8 @@ const FAULTS: [(&str, &str, &str, &str); 4] = [
         "the sign of γ in chains",
         "crates/qhat/src/chains/solve.rs",
         "-(dot(u, u) + dot(d, pull))",
-        "if crate::planted(\"the sign of γ in chains\") { dot(u, u) - dot(d, pull) } else { -(dot(u, u) + dot(d, pull)) }",
+        "if crate::planted(\"the sign of γ in chains\") { dot(u, u) - dot(d, pull) } \
+         else { -(dot(u, u) + dot(d, pull)) }",
     ),
     (
         "the slope of cos",
