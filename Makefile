@@ -7,7 +7,7 @@ MAKEFLAGS += --no-builtin-rules --no-print-directory
 # command at a time. A -j for make is not passed on to cargo, which would wait for job tokens of make.
 .NOTPARALLEL:
 unexport MAKEFLAGS MFLAGS
-.PHONY: help play build page test tests check format lint docs fuzz bench clean FORCE
+.PHONY: help play build page test tests check format lint docs fuzz bits bench clean FORCE
 
 # The pinned Rust, or the default one where rustup cannot fetch the pinned one.
 TOOLCHAIN := $(shell scripts/toolchain)
@@ -80,10 +80,22 @@ docs: ## the Rust documentation, in target/doc
 	@echo "Building the documentation"
 	@RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
-fuzz: ## random heaps, expressions and scene files, TIMES=20 times as many as in a test run
+fuzz: ## random frameworks, heaps, expressions and scenes: TIMES=20 test runs of them, or new ones for MINUTES=n
+	@cargo build --release --quiet --package qhat-differ
+ifdef MINUTES
+	@echo "Trying new frameworks and hostile scenes for $(MINUTES) minutes"
+	@target/release/qhat-differ fuzz $(MINUTES)
+else
 	@echo "Trying $(or $(TIMES),20) times as many random cases as a test run does"
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat --test all -- random_ long_heaps
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat-scene --test all -- hostile
+	@target/release/qhat-differ seeds 0 $$((390 * $(or $(TIMES),20)))
+endif
+
+bits: ## compare the bits of aarch64, under emulation, with those of the golden test
+	@scripts/setup aarch64
+	@echo "Testing that aarch64 computes the same bits"
+	@scripts/bits
 
 bench: ## time, length error and energy error of qhat and other engines, into benches/results (about half an hour)
 	@cargo build --release --quiet --package qhat-bench

@@ -5,6 +5,9 @@
 
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/qhat
 wasm_target=wasm32-unknown-unknown
+aarch64_target=aarch64-unknown-linux-gnu
+# The loader and the C library that a program for aarch64 finds under emulation.
+aarch64_libraries=/usr/aarch64-linux-gnu
 
 say() { printf '%s: %s\n' "${0##*/}" "$*"; }
 die() {
@@ -41,11 +44,14 @@ install_debian() {
     rm -f "$log"
 }
 
+# Whether the Rust on PATH has the standard library of a target. The sysroot is searched, because a Rust that rustup
+# does not manage may have it, too.
+rust_has() { [ -d "$(rustc --print sysroot)/lib/rustlib/$1/lib" ]; }
+
 # The Rust that compiles for the browser: `own` (the one on PATH has the target), `debian` (the second Rust of
-# Debian 12, which builds the standard library from source), or nothing. The sysroot is searched, because a
-# Rust that rustup does not manage may have the target, too.
+# Debian 12, which builds the standard library from source), or nothing.
 wasm_rust() {
-    if [ -d "$(rustc --print sysroot)/lib/rustlib/$wasm_target/lib" ]; then
+    if rust_has "$wasm_target"; then
         echo own
     elif [ -x /usr/bin/rustc ] && [ -x /usr/bin/cargo ] && debian_std_source >/dev/null && wasm_linker >/dev/null; then
         echo debian

@@ -1,0 +1,6 @@
+//! One binary for all tests of the crate.
+
+mod hostile;
+mod parts;
+mod planted;
+mod seeds;
