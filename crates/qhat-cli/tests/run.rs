@@ -63,7 +63,9 @@ fn csv_holds_the_same_bits_as_npz() {
     assert_eq!(header[13], format!("{}.multiplier", arrays["row_names"].texts()[0]));
     assert_eq!(header[14], format!("{}.tension", arrays["link_names"].texts()[0]));
 
-    let order = ["t", "positions", "velocities", "constraint_forces", "multipliers", "tension"];
+    assert_eq!(header[15], format!("{}.tension_is_unique", arrays["link_names"].texts()[0]));
+
+    let order = ["t", "positions", "velocities", "constraint_forces", "multipliers", "tension", "tension_is_unique"];
     let arrays: Vec<(usize, Vec<f64>)> =
         order.iter().map(|&name| (arrays[name].shape[1..].iter().product(), arrays[name].numbers())).collect();
     let mut frames = 0;
@@ -83,7 +85,7 @@ fn names_of_every_language_reach_both_formats() {
     for output in ["bob.csv", "bob.npz"] {
         folder.qhat(&["run", "bob.toml", "-o", output, "--frames", "1", "-q"]).well();
     }
-    assert!(folder.read("bob.csv").lines().next().unwrap().ends_with(",стержень-(長い).tension"));
+    assert!(folder.read("bob.csv").lines().next().unwrap().ends_with(",стержень-(長い).tension_is_unique"));
     assert_eq!(npz::read(&folder.path("bob.npz"))["link_names"].texts(), ["стержень-(長い)"]);
 }
 
@@ -120,8 +122,6 @@ fn frames_divide_the_duration() {
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);
     folder.qhat(&["run", "bob.toml", "-o", "a.npz", "--duration", "1", "--frames", "3"]).well();
     assert_eq!(npz::read(&folder.path("a.npz"))["t"].numbers(), [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0]);
-    folder.qhat(&["run", "bob.toml", "-o", "b.npz", "--frames", "0"]).well();
-    assert_eq!(npz::read(&folder.path("b.npz"))["t"].numbers(), [0.0], "the start alone");
 
     let euler = ["run", "bob.toml", "--integrator", "euler", "-o", "c.npz", "--duration", "0.4"];
     folder.qhat(&[&euler[..], &["--frames", "20"]].concat()).well();

@@ -12,6 +12,11 @@ const BEFORE: usize = 40;
 /// The most characters of a name or value that a message repeats.
 const QUOTED: usize = 60;
 
+/// What is wrong, without the value that was found: the same mistake with another value is the same error.
+fn mistake(message: &str) -> &str {
+    message.split(", but is ").next().unwrap_or(message)
+}
+
 /// The errors found so far in one text, and the text itself.
 pub(crate) struct Report<'a> {
     name: &'a str,
@@ -31,7 +36,7 @@ impl<'a> Report<'a> {
     /// all lines.
     pub(crate) fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         let message = message.into();
-        let same = |former: &SceneError| former.message == message && former.help == help;
+        let same = |former: &SceneError| mistake(&former.message) == mistake(&message) && former.help == help;
         if let Some(place) = self.errors.iter().position(same) {
             let line = self.line_of(self.on_characters(span).start);
             self.errors[place].also.push(line);

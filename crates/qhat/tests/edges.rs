@@ -63,7 +63,8 @@ fn a_helix_goes_on_beyond_its_range() {
     let y = simulation.state().positions()[1];
     // Of the way, 170 m in 30 s: the error of some 10⁴ substeps at 1e-8.
     assert!((y + 0.1 * s).abs() < 1e-5 * s, "{y} m, and not {} m", -0.1 * s);
-    assert!(simulation.energy_error_max() < 1e-9, "{:e}", simulation.energy_error_max());
+    // Errors of 1e-10 in each of some 10⁴ substeps add up to 1e-6 at most.
+    assert!(simulation.energy_error_max() < 1e-7, "{:e}", simulation.energy_error_max());
 }
 
 /// Without forces a bead goes at one speed through the crossing of a figure of eight, from one lobe to the other, and
@@ -92,7 +93,9 @@ fn a_bead_goes_straight_through_a_crossing() {
     }
     // The lobes end at ±1; a hundred frames a round come within 2e-3 of that.
     assert!(sides[0] < -0.99 && sides[1] > 0.99, "{sides:?}");
-    assert!(simulation.energy_error_max() < 1e-9);
+    let error = simulation.energy_error_max();
+    // Errors of at most 1e-8 in each of some hundred substeps, of either sign.
+    assert!(error < 1e-7, "{error:e}");
 }
 
 /// A run that is saved and loaded gives the same bits, also beyond the range of a path.

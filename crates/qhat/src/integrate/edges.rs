@@ -9,11 +9,13 @@
 //! the substep is halved, each time towards the larger turn: a turn becomes small, a jump stays. A gradient that goes
 //! through zero, as at the crossing of x y = 0, jumps as well, but the force does not: the motion goes straight on.
 
-use super::failure::{NO_LENGTH, shortest_arm};
+use super::failure::shortest_arm;
 use crate::constraint::{Constraint, Holds, Layout, Rows};
 use crate::point::{Motion, Point, dot};
 use crate::system::System;
 
+/// Length of an arm, relative to the extent of the system, below which it is lost.
+const LOST: f64 = 1e-7;
 /// Cosine of the turn in a substep from which a jump is sought: 120°.
 const TURNED: f64 = -0.5;
 /// Cosine of a turn that is no jump: 60°.
@@ -44,7 +46,7 @@ impl<const D: usize> Passage<'_, D> {
     /// stretch goes round it or through it.
     pub(super) fn lost_arm(&self) -> Option<usize> {
         let Passage { system, from, to, .. } = *self;
-        let nothing = NO_LENGTH * system.extent;
+        let nothing = LOST * system.extent;
         system.jumpy.iter().copied().find(|&place| {
             let is_active = self.is_active(system.constraints[place].first_row);
             let length = |q: &[f64]| shortest_arm::<D>(system, place, q).map_or(f64::INFINITY, |(_, length)| length);

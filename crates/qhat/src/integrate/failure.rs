@@ -24,7 +24,7 @@ use crate::state::State;
 use crate::system::System;
 
 /// Length of an arm, relative to the extent of the system, below which it has shrunk to nothing.
-pub(super) const NO_LENGTH: f64 = 1e-6;
+const NO_LENGTH: f64 = 1e-6;
 
 /// Part of the accelerations in a row by which J q̈ = −γ must be missed to count as a contradiction: A that is nearly
 /// singular leaves 1e-6 (`ACCEPTED_RESIDUAL` in `multiplier/factor.rs`).

@@ -19,7 +19,7 @@
 
 use super::Workspace;
 use super::adaptive::control::RowSums;
-use super::adaptive::{self, Attempt, Outcome, Stepper, Substeps, dopri5, pair_frame};
+use super::adaptive::{self, Attempt, Outcome, Refusal, Stepper, Substeps, dopri5, pair_frame};
 use super::edges::Passage;
 use super::frame::Frame;
 use crate::constraint::Jacobian;
@@ -138,7 +138,7 @@ impl<const D: usize> Stepper for RattleStepper<'_, '_, D> {
         let to = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end };
         let (Equation { rows, inactive, .. }, before) = (&workspace.equation, &workspace.rattle.J.blocks);
         if (Passage { system, rows, inactive, before, from, to }).is_barred() {
-            return Outcome::NotMet;
+            return Outcome::Refused(Refusal::Edge);
         }
         let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
         let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: end });

@@ -35,6 +35,8 @@ pub(crate) enum Refusal {
     Jump,
     /// The multipliers do not satisfy the equation.
     Balance,
+    /// The substep passes a place beyond which the motion is another one (`integrate/edges.rs`).
+    Edge,
 }
 
 /// Whether a substep with this error estimate is kept; an error that is not a number is not.

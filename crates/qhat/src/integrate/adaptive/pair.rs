@@ -93,7 +93,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         self.stages.remember();
         let Stages { q, qd, next_q, next_qd, .. } = self.stages;
         match self.field.project(next_q, next_qd, end, self.settings) {
-            Projected::Met(_) if self.field.passes_an_edge(q, qd, state.t, end) => Outcome::NotMet,
+            Projected::Met(_) if self.field.passes_an_edge(q, qd, state.t, end) => Outcome::Refused(Refusal::Edge),
             // Rods that hold only to second order stop a motion across them as a blow would.
             Projected::Met(_) if self.system.second_order.is_empty() && !accepts_move(self.moved(h), self.settings) => {
                 self.stages.recall();

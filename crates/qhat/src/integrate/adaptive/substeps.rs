@@ -21,6 +21,9 @@ use crate::system::System;
 /// Length of a substep, in frames, below which shortening it does not help.
 const SHORTEST: f64 = 1e-12;
 
+/// The same at an edge, which no substep passes: nearer to it, roundoff decides how the motion goes on.
+const NEAR_EDGE: f64 = 1e-6;
+
 /// Part of the substep by which a substep that does not meet the constraints is tried again.
 const HALF: f64 = 0.5;
 
@@ -122,7 +125,8 @@ impl<'a> Substeps<'a> {
             match self.judge(outcome, method)? {
                 Verdict::Singular => return Ok(End::Singular),
                 Verdict::Rejected { growth } => {
-                    if self.reject(&substep, growth) < SHORTEST * self.length {
+                    let shortest = if refusal == Some(Refusal::Edge) { NEAR_EDGE } else { SHORTEST };
+                    if self.reject(&substep, growth) < shortest * self.length {
                         // The error is about the last good motion, which the method may have kept to itself.
                         method.end(state);
                         return Err(self.failure(method, state, substep.end, refusal));
