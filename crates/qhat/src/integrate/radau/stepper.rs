@@ -93,7 +93,7 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
         tried_q.copy_from_slice(&stages.q);
         tried_qd.copy_from_slice(&stages.qd);
         match self.project(&step) {
-            Some(_) if self.passes_an_edge(&step) => Outcome::NotMet,
+            Some(_) if self.passes_an_edge(&step) => Outcome::Refused(Refusal::Edge),
             Some(_) if !accepts_move(self.moved(h), self.settings) => Outcome::Refused(Refusal::Jump),
             Some(iterations) => {
                 attempt.iterations += iterations;
