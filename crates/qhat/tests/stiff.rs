@@ -143,7 +143,8 @@ fn long_chains_stay_on_their_rods() {
     }
 }
 
-/// A truss with one brace more than it needs: the motion is that of dop853, and the warning says that rows repeat others.
+/// A truss with one brace more than it needs: the motion is that of dop853, and the warning says that rows repeat
+/// others.
 #[test]
 fn redundant_rows_are_left_out() {
     let exact = run(systems::truss(5, true), Settings { tolerance: 1e-10, ..settings(Integrator::Dop853, FRAME) }, 0.5);
