@@ -44,7 +44,7 @@ fn main() -> ExitCode {
 
 /// One seed with its scene; whether qhat and the reference agree.
 fn one(seed: u64) -> bool {
-    let outcome = seeds(seed..seed.saturating_add(1), &|_| true, &|seed, verdict| {
+    let outcome = seeds(seed..seed.saturating_add(1), &|seed, verdict| {
         print!("{}", described(seed, verdict));
         println!("the largest difference is {:.1e} of what is allowed", verdict.worst);
     });
@@ -54,7 +54,7 @@ fn one(seed: u64) -> bool {
 /// Many seeds, with progress on the terminal; whether qhat and the reference agree on all of them.
 fn many(from: u64, count: u64) -> bool {
     let (start, done) = (Instant::now(), AtomicU64::new(0));
-    let outcome = seeds(from..from.saturating_add(count), &|_| true, &|seed, verdict| {
+    let outcome = seeds(from..from.saturating_add(count), &|seed, verdict| {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         if !verdict.findings.is_empty() {
             eprintln!("\n{}", described(seed, verdict));
