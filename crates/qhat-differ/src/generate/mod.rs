@@ -34,7 +34,7 @@ const SHAPES: [(&str, Shape); 13] = [
 const TRIES: u64 = 40;
 
 /// The name of the shape of a seed.
-pub fn family(seed: u64) -> &'static str {
+fn family(seed: u64) -> &'static str {
     SHAPES[(seed % SHAPES.len() as u64) as usize].0
 }
 
