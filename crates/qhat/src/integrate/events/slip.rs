@@ -21,7 +21,7 @@
 
 use crate::constraint::Rows;
 use crate::contact::{along, size};
-use crate::modes::Course;
+use crate::modes::{Course, is_same_slip};
 use crate::multiplier::{Equation, Sliding};
 use crate::point::dot;
 use crate::system::System;
@@ -94,10 +94,12 @@ impl AtStart {
             let after = slip(contact, &gaps.Cd);
             let u = [after[0] + K * to[0], after[1] + K * to[1]];
             let free = size(u);
+            let is_at_rest = size(slip(contact, &self.Cd)) <= rest_speed;
             let next = if free > 0.0 { u.map(|u| u / free) } else { to };
+            let next = if is_at_rest || is_same_slip(from, next) { next } else { from };
             astray.across = astray.across.max(contact.slip.across);
             astray.turned = astray.turned.max(K * size([next[0] - to[0], next[1] - to[1]]));
-            let from = if size(slip(contact, &self.Cd)) > rest_speed { from } else { next };
+            let from = if is_at_rest { next } else { from };
             contact.slip.course = Course::Turns { from, to: next, start, h };
             contact.slip.across = 0.0;
         }
