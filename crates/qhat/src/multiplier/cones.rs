@@ -140,3 +140,49 @@ fn hessian(members: &[Member], z: &[f64]) -> Vec<f64> {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two feet that a rod presses apart or together, z its force, under a push along the rod at the first.
+    fn feet(push: f64, loads: [f64; 2]) -> [Member; 2] {
+        let member = |force: [f64; 3], part: f64| Member { friction: 0.5, force, parts: vec![[0.0, part, 0.0]] };
+        [member([loads[0], push, 0.0], -1.0), member([loads[1], 0.0, 0.0], 1.0)]
+    }
+
+    fn off(members: &[Member], z: &[f64]) -> Vec<f64> {
+        let from = |member: &Member| outside(member.friction, force(member, z)).map_or([0.0; 3], |out| out.from_cone);
+        members.iter().map(from).map(|v| dot(&v, &v).sqrt()).collect()
+    }
+
+    #[test]
+    fn forces_within_all_cones_are_found_where_there_are_any() {
+        // Friction of at most 0.5 + 2 holds 2.4: the second foot takes 1.9 at least.
+        let members = feet(2.4, [1.0, 4.0]);
+        let z = least_outside(&members, 1);
+        assert!((z[0] - 1.9).abs() < 1e-9, "{z:?}");
+        assert!(off(&members, &z).iter().all(|off| *off < 1e-10), "{:?}", off(&members, &z));
+        // A push that the first foot holds alone stays there.
+        assert_eq!(least_outside(&feet(0.4, [1.0, 4.0]), 1), [0.0]);
+    }
+
+    #[test]
+    fn what_no_cone_holds_is_shared_and_grows_from_zero() {
+        for beyond in [1e-6, 1e-3, 0.1] {
+            let members = feet(2.5 + beyond, [1.0, 4.0]);
+            let off = off(&members, &least_outside(&members, 1));
+            let share = 0.5 * beyond / 1.25_f64.sqrt();
+            assert!(off.iter().all(|off| (off - share).abs() < 1e-9 * (1.0 + share)), "{off:?}, expected {share}");
+        }
+    }
+
+    #[test]
+    fn a_contact_without_friction_does_not_pull() {
+        let pulled = Member { friction: 0.0, force: [-1.0, 0.0, 0.0], parts: vec![[1.0, 0.0, 0.0]] };
+        let pressed = Member { friction: 0.3, force: [2.0, 0.0, 0.0], parts: vec![[-1.0, 0.2, 0.1]] };
+        let members = [pulled, pressed];
+        let z = least_outside(&members, 1);
+        assert!((z[0] - 1.0).abs() < 1e-9, "{z:?}");
+    }
+}
