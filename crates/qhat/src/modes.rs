@@ -65,6 +65,12 @@ fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     (size > 0.0).then(|| v.map(|component| component / size))
 }
 
+/// Whether a slip may have turned from one direction to another in one substep. A slip more than 60° away from its
+/// start has stopped on the way; the event is found with the old direction.
+pub(crate) fn is_same_slip(from: [f64; 2], to: [f64; 2]) -> bool {
+    from[0] * to[0] + from[1] * to[1] > 0.5
+}
+
 impl Slip {
     /// A slip in a direction that it keeps until told otherwise.
     pub(crate) fn along(direction: [f64; 2]) -> Self {
@@ -76,10 +82,7 @@ impl Slip {
         match self.course {
             Course::Kept => {}
             Course::Follows => {
-                // A slip more than 60° away from its start has stopped on the way: the event is found with the old
-                // direction.
-                let is_same_slip = |d: &[f64; 2]| d[0] * self.at_start[0] + d[1] * self.at_start[1] > 0.5;
-                self.direction = unit(v).filter(is_same_slip).unwrap_or(self.at_start);
+                self.direction = unit(v).filter(|&d| is_same_slip(self.at_start, d)).unwrap_or(self.at_start);
             }
             Course::Turns { from, to, start, h } => {
                 let part = ((t - start) / h).clamp(0.0, 1.0);

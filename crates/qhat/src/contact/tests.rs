@@ -5,7 +5,7 @@ use super::{Touching, settle};
 use crate::modes::{Mode, Modes, Slip};
 use crate::multiplier::Equation;
 use crate::point::Motion;
-use crate::{Dimension, Limits, Obstacle, Particle, ParticleId, State, Surface, System};
+use crate::{Dimension, Distance, Limits, Obstacle, Particle, ParticleId, State, Surface, System};
 
 /// SplitMix64 (Steele, Lea, Flood 2014), in [−1, 1).
 pub(super) struct Random(pub(super) u64);
@@ -162,4 +162,100 @@ fn friction_sticks_slips_or_lifts_off() {
         }
     }
     assert!(seen.iter().all(|&count| count > 5), "{seen:?}");
+}
+
+/// Whether λ and the modes at hand solve the problem, to 1e-9 of the right-hand side.
+fn assert_solved(equation: &Equation, system: &System, modes: &Modes, what: &str) {
+    let small = 1e-9 * equation.b.sum.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+    let w = |row: usize| equation.J_W_JT_lambda::<2>(row) - equation.b.sum[row];
+    for (contact, mode) in system.contacts.list.iter().zip(&modes.contacts) {
+        let (normal, lambda) = (w(contact.normal), equation.lambda[contact.normal]);
+        match mode {
+            Mode::Open => assert!(normal >= -small && lambda == 0.0, "{what}: {modes:?}, w {normal}"),
+            _ => assert!(normal.abs() <= small && lambda >= 0.0, "{what}: {modes:?}, w {normal}, λ {lambda}"),
+        }
+        for row in contact.tangents.clone() {
+            match mode {
+                Mode::Sticking => assert!(w(row).abs() <= small, "{what}: {modes:?}, slip {}", w(row)),
+                Mode::Sliding(slip) => assert!(w(row) * slip.direction[0] >= -small, "{what}: {modes:?}, {}", w(row)),
+                Mode::Open | Mode::Smooth => {}
+            }
+        }
+    }
+}
+
+/// Three feet of a rigid body in one line, A and B at its ends and C in the middle, on a floor with friction.
+fn three_feet(friction: f64) -> (System, State) {
+    let mut builder = System::builder(Dimension::Two);
+    let places = [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]];
+    let ids: Vec<ParticleId> =
+        places.iter().enumerate().map(|(i, &place)| builder.particle(Particle::at(format!("p{i}"), place))).collect();
+    for (i, j) in [(0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+        let (a, b) = (places[i], places[j]);
+        let length = ((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])).sqrt();
+        builder.constraint(format!("{i}-{j}"), Distance::new(ids[i], ids[j], length));
+    }
+    let floor = Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: 0.0 };
+    for &id in &ids[..3] {
+        builder.constraint(format!("foot {}", id.0), Obstacle { friction, ..Obstacle::new(id, floor.clone()) });
+    }
+    builder.build().unwrap()
+}
+
+/// The middle foot follows from the others, which leave it out of A. It opens where the others lift it, and the others
+/// open where it lifts them, whatever modes the search begins with.
+#[test]
+fn a_foot_that_follows_from_others_opens_where_they_lift_it() {
+    let (system, state) = three_feet(0.0);
+    for (middle, expected) in [(0.5, [true, true, false]), (1.5, [false, false, true])] {
+        for start in 0..8 {
+            let mut equation = at::<2>(&system, &state);
+            equation.b.sum = vec![0.0; system.row_count()];
+            for (contact, b) in system.contacts.list.iter().zip([1.0, 1.0, middle]) {
+                equation.b.sum[contact.normal] = b;
+            }
+            let mut modes = Modes::at_first(&system.contacts);
+            for k in (0..3).filter(|k| start >> k & 1 == 1) {
+                modes.contacts[k] = Mode::Smooth;
+            }
+            settle::<2>(&mut equation, &system, &mut modes, &all(3)).unwrap();
+            let closed: Vec<bool> = modes.contacts.iter().map(|mode| mode.is_closed()).collect();
+            assert_eq!(closed, expected, "from {start}");
+            assert_solved(&equation, &system, &modes, &format!("from {start}"));
+        }
+    }
+}
+
+/// Ropes between random points as above, beside others with right-hand sides of a billion times as much: each is
+/// decided by the forces on its own particles, and the search ends.
+#[test]
+fn contacts_beside_large_impulses_are_decided_by_their_own_forces() {
+    let mut random = Random(23);
+    for round in 0..100 {
+        let mut builder = System::builder(Dimension::Two);
+        for i in 0..8 {
+            builder.particle(Particle::at(format!("p{i}"), vec![random.number(), random.number()]));
+        }
+        // At most 4 of the 5 distances of 4 points in the plane that are independent.
+        let pairs = [(0, 1), (1, 2), (2, 3), (0, 3)];
+        for (i, j) in pairs.into_iter().chain(pairs.map(|(i, j)| (i + 4, j + 4))) {
+            builder.constraint(format!("{i}-{j}"), Limits::rope(ParticleId(i), ParticleId(j), 10.0));
+        }
+        let (system, state) = builder.build().unwrap();
+        let b: Vec<f64> = (0..8).map(|_| random.number()).collect();
+        let settled = |scale: f64| {
+            let mut equation = at::<2>(&system, &state);
+            equation.b.sum = b.iter().enumerate().map(|(row, b)| if row < 4 { *b } else { scale * b }).collect();
+            let mut modes = Modes::at_first(&system.contacts);
+            settle::<2>(&mut equation, &system, &mut modes, &all(8)).unwrap();
+            (modes, equation.lambda)
+        };
+        let ((modes, lambda), (beside, lambda_beside)) = (settled(1.0), settled(1e9));
+        assert_eq!(modes, beside, "round {round}");
+        for row in 0..4 {
+            let off = (lambda[row] - lambda_beside[row]).abs();
+            // 1e-15 of a billion.
+            assert!(off <= 1e-6 * (1.0 + lambda[row]), "round {round}, row {row}: {off}");
+        }
+    }
 }

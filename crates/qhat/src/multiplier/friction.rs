@@ -120,7 +120,7 @@ impl Friction {
 
 /// x ← A⁻¹ x by elimination with the largest pivot of each column; not a number where A is singular. A is small, and
 /// overwritten.
-fn eliminate(A: &mut [f64], x: &mut [f64]) {
+pub(super) fn eliminate(A: &mut [f64], x: &mut [f64]) {
     let n = x.len();
     for k in 0..n {
         let pivot = (k + 1..n).fold(k, |best, i| if A[i * n + k].abs() > A[best * n + k].abs() { i } else { best });

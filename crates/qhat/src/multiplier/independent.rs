@@ -83,7 +83,7 @@ impl Equation {
         let mut dependent = rank.dependent.clone();
         dependent.extend(rows.iter().map(|&row| row as u32));
         dependent.sort_unstable();
-        self.rank = Some(Arc::new(Rank { inactive: self.inactive.clone(), dependent, ..Rank::clone(rank) }));
+        self.rank = Some(Arc::new(Rank { inactive: self.inactive.clone(), dependent, ..*rank }));
         true
     }
 

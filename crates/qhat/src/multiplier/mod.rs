@@ -6,6 +6,7 @@
 //! `second_order.rs` finds rods that hold only to second order.
 
 mod active;
+mod cones;
 mod equation;
 mod factor;
 mod friction;

@@ -2,7 +2,8 @@
 //!
 //! Three feet of a rigid body that stick have nine rows, of which six hold the body. With λ of independent rows, single
 //! feet would do all the work, beyond their cones of friction. Of all λ with the same force Jᵀλ, the one is taken that
-//! slightly elastic contacts between rigid rows would have:
+//! slightly elastic contacts between rigid rows would have, and of those within all cones the nearest to it
+//! (`cones.rs`):
 //!
 //! ```text
 //! least Σ (|J_i| λ_i)² over the rows of contacts,   λ⁰ + Σ_D z_D v_D
@@ -13,6 +14,7 @@
 //! and is left alone.
 
 use super::Equation;
+use super::cones::{Member, least_outside};
 use crate::point::norm;
 use crate::structure::Contact;
 use crate::system::System;
@@ -57,8 +59,30 @@ impl Equation {
             add(-along, &v, &mut lambda);
             basis.push(v);
         }
+        let members = self.members(system, &weight, &lambda, &basis);
+        let z = least_outside(&members, basis.len());
+        z.iter().zip(&basis).filter(|(z, _)| **z != 0.0).for_each(|(z, v)| add(*z, v, &mut lambda));
         self.lambda = lambda;
         (self.Q_hat, self.W_JT_lambda) = of_lambda;
+    }
+
+    /// The closed contacts that do not slide, with their forces by λ and by each v.
+    fn members(&self, system: &System, weight: &[f64], lambda: &[f64], basis: &[Vec<f64>]) -> Vec<Member> {
+        let slides = |contact: &Contact| self.sliding.iter().any(|sliding| sliding.normal == contact.normal);
+        let held = system.contacts.list.iter().filter(|contact| !self.is_inactive(contact.normal) && !slides(contact));
+        let member = |contact: &Contact| {
+            let is_sticking = contact.tangents.clone().any(|row| !self.is_inactive(row));
+            let size = weight[contact.normal].sqrt();
+            let force = |lambda: &[f64]| {
+                let mut force = [size * lambda[contact.normal], 0.0, 0.0];
+                let tangents = contact.tangents.clone().filter(|_| is_sticking);
+                force[1..].iter_mut().zip(tangents).for_each(|(force, row)| *force = size * lambda[row]);
+                force
+            };
+            let friction = if is_sticking { contact.friction } else { 0.0 };
+            Member { friction, force: force(lambda), parts: basis.iter().map(|v| force(v)).collect() }
+        };
+        held.map(member).collect()
     }
 
     /// |J_i|² of active rows of contacts, 0 of others.

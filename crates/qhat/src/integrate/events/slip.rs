@@ -21,7 +21,7 @@
 
 use crate::constraint::Rows;
 use crate::contact::{along, size};
-use crate::modes::Course;
+use crate::modes::{Course, is_same_slip};
 use crate::multiplier::{Equation, Sliding};
 use crate::point::dot;
 use crate::system::System;
@@ -48,7 +48,8 @@ pub(super) struct Astray {
 
 impl AtStart {
     /// Decides for a substep from `start` over h [s] how directions go on; whether there are any that may turn. A slip
-    /// slower than `rest_speed` [m/s] at the start has the direction that it was given there.
+    /// slower than `rest_speed` [m/s] at the start has no direction of its own there: d is that at the end all the
+    /// time.
     pub(super) fn prepare<const D: usize>(
         &self,
         system: &System,
@@ -63,12 +64,13 @@ impl AtStart {
             let v = slip(contact, &self.Cd);
             let speed = size(v);
             let K = change::<D>(contact, h, self.lambda[contact.normal], system, rows);
-            let from = if speed > rest_speed { v.map(|v| v / speed) } else { contact.slip.at_start };
+            let along_v = (speed > rest_speed).then(|| v.map(|v| v / speed));
             // The substep before this one may have been tried from the same start.
             let to = match contact.slip.course {
                 Course::Turns { to, .. } => to,
-                Course::Kept | Course::Follows => from,
+                Course::Kept | Course::Follows => along_v.unwrap_or(contact.slip.at_start),
             };
+            let from = along_v.unwrap_or(to);
             let turn = Course::Turns { from, to, start, h };
             contact.slip.course = if speed > FAST * K { Course::Follows } else { turn };
             contact.slip.across = 0.0;
@@ -77,7 +79,13 @@ impl AtStart {
     }
 
     /// Aims directions that turn at what the rule gives after a substep of h that was tried with them.
-    pub(super) fn align<const D: usize>(&self, system: &System, equation: &mut Equation, h: f64) -> Astray {
+    pub(super) fn align<const D: usize>(
+        &self,
+        system: &System,
+        equation: &mut Equation,
+        h: f64,
+        rest_speed: f64,
+    ) -> Astray {
         let Equation { sliding, rows, gaps, lambda, .. } = equation;
         let mut astray = Astray::default();
         for contact in sliding.iter_mut() {
@@ -86,9 +94,12 @@ impl AtStart {
             let after = slip(contact, &gaps.Cd);
             let u = [after[0] + K * to[0], after[1] + K * to[1]];
             let free = size(u);
+            let is_at_rest = size(slip(contact, &self.Cd)) <= rest_speed;
             let next = if free > 0.0 { u.map(|u| u / free) } else { to };
+            let next = if is_at_rest || is_same_slip(from, next) { next } else { from };
             astray.across = astray.across.max(contact.slip.across);
             astray.turned = astray.turned.max(K * size([next[0] - to[0], next[1] - to[1]]));
+            let from = if is_at_rest { next } else { from };
             contact.slip.course = Course::Turns { from, to: next, start, h };
             contact.slip.across = 0.0;
         }

@@ -16,6 +16,10 @@ const ALIGNMENTS: usize = 20;
 /// What aligned directions may be off by, in tolerances.
 const ALIGNED: f64 = 1e-3;
 
+/// Part of the error of a substep that is turned in its last alignment, below which the error is known well enough to
+/// choose the next length by it.
+const SETTLED: f64 = 0.1;
+
 impl<const D: usize> EventStepper<'_, D> {
     /// Tries a substep of h, with directions of friction that follow their slip or turn to its direction at the
     /// end (`slip.rs`); if it is accepted, its event functions are at hand.
@@ -34,14 +38,17 @@ impl<const D: usize> EventStepper<'_, D> {
             // Of a slip that stops: substeps shrink with it, and a speed of rest by their length would grow.
             let (speed, tolerance) = (self.run.speed(self.frame), self.run.settings.tolerance);
             let equation = &mut self.run.field.workspace.equation;
-            let astray = self.at_start.align::<D>(self.run.system, equation, h);
+            let astray = self.at_start.align::<D>(self.run.system, equation, h, rest_speed);
             let is_aligned = astray.turned <= ALIGNED * tolerance * speed;
             let error = attempt.error.max(astray.across / speed);
             self.turns = error > attempt.error;
             if is_aligned && accepts(error, self.run.settings) {
                 self.write_event_functions(state.t + h);
                 return Ok(Attempt { error, ..attempt });
-            } else if is_aligned {
+            }
+            // More alignments would not make the substep acceptable.
+            let is_hopeless = !accepts(error, self.run.settings) && astray.turned <= SETTLED * astray.across;
+            if is_aligned || is_hopeless {
                 return Err(Outcome::Met(Attempt { error, ..attempt }));
             }
             self.run.turn_back(state);
