@@ -6,7 +6,7 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Integrators that hold C = 0, each with tolerances from loose to tight. The recommended tolerance is among them.
+/// Integrators that hold C = 0, each with tolerances from loose to tight.
 pub const SETTINGS: [(Integrator, &[f64]); 6] = [
     (Integrator::Rattle, &[1e-3, 1e-4, 1e-5]),
     (Integrator::Dopri5, &[1e-3, 1e-4, 1e-6]),
@@ -26,14 +26,16 @@ pub struct Setting {
     pub tolerance: f64,
 }
 
-/// The settings of a workload, in the order of [`SETTINGS`]. A large workload has the default tolerance only, because
-/// it measures the cost of a step.
+/// The tolerance of large workloads.
+const OF_LARGE: f64 = 1e-4;
+
+/// The settings of a workload, in the order of [`SETTINGS`]. A large workload has one tolerance only, because it
+/// measures the cost of a step.
 pub fn settings(workload: &Workload) -> Vec<Setting> {
     let each = |(integrator, tolerances): (Integrator, &'static [f64])| {
         tolerances.iter().map(move |&tolerance| Setting { integrator, tolerance })
     };
-    let default = Settings::default().tolerance;
-    let wanted = |setting: &Setting| !workload.is_large() || setting.tolerance == default;
+    let wanted = |setting: &Setting| !workload.is_large() || setting.tolerance == OF_LARGE;
     SETTINGS.into_iter().flat_map(each).filter(wanted).collect()
 }
 

@@ -105,7 +105,7 @@ fn a_trajectory_tells_the_errors_of_its_run() {
     assert_eq!((frames, &outcome.ended), (workload.frames, &None));
     assert_eq!(errors.worst_length, outcome.errors.worst_length);
     assert_eq!(errors.energy(), outcome.errors.energy());
-    // The bounds that the engine documents for its default tolerances.
+    // The constraint tolerance, and the energy that a tolerance of 1e-4 keeps.
     assert!(errors.worst_length <= 1e-10 && errors.energy().abs() <= 1e-2, "{errors:?}");
 }
 

@@ -200,7 +200,7 @@ impl Default for Settings {
         Settings {
             h: 0.01,
             integrator: Integrator::default(),
-            tolerance: 1e-4,
+            tolerance: 1e-7,
             constraint_tolerance: 1e-10,
             max_substeps: 200_000,
             frame_budget: 10_000,

@@ -89,7 +89,7 @@ fn free_structure_keeps_momentum_and_energy() {
             assert_close(&format!("{integrator}: angular momentum {k}"), after[3 + k], before[3 + k], 1e-9);
         }
         let allowed = match integrator {
-            Integrator::Rattle => 2e-4, // 3e-3 at the default tolerance, smaller by its ⅔ power
+            Integrator::Rattle => 2e-4, // 3e-3 at a tolerance of 1e-4, smaller by its ⅔ power
             Integrator::Rk4 => 1e-9,
             _ => 2e-2, // order 1 at h ω = 5e-3
         };

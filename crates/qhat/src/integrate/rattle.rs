@@ -38,7 +38,7 @@ use crate::system::System;
 const MAX_ITERATIONS: usize = 16;
 
 /// Factor on the error estimate: the difference of the multipliers estimates the local error up to a factor. With
-/// this one the default tolerance of 1e-4 leaves energy errors of 4e-7 to 5e-4 after 2 s of chains and of a net
+/// this one a tolerance of 1e-4 leaves energy errors of 4e-7 to 5e-4 after 2 s of chains and of a net
 /// (`benches/results/workloads.csv`).
 const ERROR_SCALE: f64 = 8.0;
 

@@ -16,7 +16,7 @@ use crate::system::System;
 pub(crate) const AT_REST: f64 = 1e-3;
 
 /// Factor on the error estimate, which is a mean over all coordinates, while a large error may be in a few. With this
-/// factor and the default tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100
+/// factor and a tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100
 /// and 1000 links. At a tolerance of 1e-3 its substeps run against the bound of stability: a chain of 1000 links takes
 /// 1588 of them in place of 830 (`benches/results/workloads.csv`).
 pub(crate) const ERROR_SCALE: f64 = 4.0;
