@@ -24,25 +24,25 @@ fn long_with_work_to_spare_it_is_dop853() {
     }
 }
 
-/// Under a load of a billion beads ω is 2e6/s and more: a frame would take thousands of substeps with h ω = 5.
+/// Under a load of a billion beads ω is 2e6/s and more: a frame would take thousands of substeps with h ω = 5, ten times
+/// as many as it may.
 #[test]
 fn a_load_that_cannot_be_followed_is_carried_at_the_end_of_the_step() {
     let (system, state) = systems::chain(100, 1e9);
-    let mut simulation = Simulation::new(system, state, systems::settings(Integrator::Auto, FRAME)).unwrap();
-    let mut by_bdf2 = 0;
+    let mut simulation = Simulation::new(system, state, settings(1_000_000)).unwrap();
+    let mut at_the_end = 0;
     for _ in 0..120 {
         let report = simulation.step().unwrap();
         assert!(report.max_relative_length_error <= 1e-10);
+        at_the_end += usize::from(report.solver == Solver::EndOfStep);
         if report.integrator == Integrator::Bdf2 {
-            by_bdf2 += 1;
             assert_eq!(report.solver, Solver::EndOfStep);
-            assert!(matches!(report.warnings[..], [Warning::TooStiff { .. }]), "{:?}", report.warnings);
+            assert!(matches!(report.warnings[0], Warning::TooStiff { .. }), "{:?}", report.warnings);
         }
     }
-    // While the load falls, the tension is low enough for dop853; it is too high when the load swings through, in the
-    // last 14 frames.
-    assert!(by_bdf2 >= 10, "{by_bdf2} frames of 120");
-    // The pendulum loses little energy: bdf2 damps only motion that is too fast for h.
+    // While the load falls, the tension is low enough for dop853; it is too high when the load swings through.
+    assert!(at_the_end >= 30, "{at_the_end} frames of 120");
+    // The pendulum loses little energy: a step solved at its end damps only motion that is too fast for h.
     assert!(simulation.energy_error().abs() < 0.05, "{:e}", simulation.energy_error());
 }
 

@@ -56,6 +56,7 @@ mod verify_expression;
 mod verify_forces;
 mod verify_gears;
 mod verify_implicit;
+mod verify_orbits;
 mod verify_pendulum;
 mod verify_rattle;
 mod verify_rigid;

@@ -76,11 +76,12 @@ fn long_a_stiff_strut_is_followed_to_a_millionth() {
 fn a_tighter_tolerance_is_more_exact() {
     let positions = |tolerance: f64| run(strut(), radau5(0.01, tolerance), 2.0).0.state().positions().to_vec();
     let exact = positions(1e-11);
-    let errors = [1e-4, 1e-6, 1e-8, 1e-10].map(|tolerance| systems::dense::difference(&positions(tolerance), &exact));
+    let errors = [1e-4, 1e-6, 1e-8].map(|tolerance| systems::dense::difference(&positions(tolerance), &exact));
     for pair in errors.windows(2) {
         assert!(pair[1] < 0.2 * pair[0], "{errors:?}");
     }
-    assert!(errors[3] < 1e-8, "{errors:?}");
+    // Below that the constraint tolerance of 1e-10 decides.
+    assert!(errors[2] < 1e-9, "{errors:?}");
 }
 
 /// μ = 1e6, two seconds with two jumps. SciPy's Radau takes 859 steps at 1e-6 for 5e-9, and 491 at 1e-5 for 1.6e-7. The
