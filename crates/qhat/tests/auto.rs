@@ -24,8 +24,8 @@ fn long_with_work_to_spare_it_is_dop853() {
     }
 }
 
-/// Under a load of a billion beads ω is 2e6/s and more: a frame would take thousands of substeps with h ω = 5, ten times
-/// as many as it may.
+/// Under a load of a billion beads ω is 2e6/s and more: a frame would take thousands of substeps with h ω = 5, ten
+/// times as many as it may.
 #[test]
 fn a_load_that_cannot_be_followed_is_carried_at_the_end_of_the_step() {
     let (system, state) = systems::chain(100, 1e9);

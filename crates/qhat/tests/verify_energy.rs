@@ -26,8 +26,8 @@ fn double_pendulum_keeps_its_energy() {
     assert!(simulation.energy().kinetic > 0.1, "it still swings");
 }
 
-/// A chain of 100 links released from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. A tolerance
-/// of 1e-4 must be enough for both.
+/// A chain of 100 links released from the horizontal cracks like a whip; a load of 1000 beads keeps it taut. A
+/// tolerance of 1e-4 must be enough for both.
 #[test]
 fn long_whipping_chains_keep_length_and_energy_under_dop853() {
     for heavy in [1.0, 1000.0] {

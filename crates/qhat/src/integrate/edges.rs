@@ -5,9 +5,10 @@
 //! - A place where the gradient of a row jumps or has no value: where a stretch of a rope has no length, its direction
 //!   d/|d| turns by 180° at once, and a substep that goes over such a place is not the motion of any rope.
 //!
-//! A gradient that turns by more than 120° in a substep has turned fast, or has jumped. The cubic through both ends of
-//! the substep is halved, each time towards the larger turn: a turn becomes small, a jump stays. A gradient that goes
-//! through zero, as at the crossing of x y = 0, jumps as well, but the force does not: the motion goes straight on.
+//! A gradient of a row by a particle that turns by more than 120° in a substep has turned fast, or has jumped. The
+//! cubic through both ends of the substep is halved, each time towards the larger turn: a turn becomes small, a jump
+//! stays. A gradient that goes through zero, as at the crossing of x y = 0, jumps as well, but the force does not: the
+//! motion goes straight on.
 
 use super::failure::shortest_arm;
 use crate::constraint::{Constraint, Holds, Layout, Rows};
@@ -22,7 +23,8 @@ const TURNED: f64 = -0.5;
 const SMOOTH: f64 = 0.5;
 /// Halvings of the substep: 1e-14 of it.
 const HALVINGS: usize = 46;
-/// Part of the gradient at the ends of the substep below which a gradient is taken to have gone through zero.
+/// Part of the gradient below which a block of it is taken to have gone through zero: the factor of a product that is
+/// held at zero turns with every rounding.
 const VANISHED: f64 = 1e-6;
 
 /// A substep from one motion to another. `before` is J at its start, `rows` are those at its end; inactive rows do not
@@ -71,19 +73,24 @@ impl<const D: usize> Passage<'_, D> {
             let rows = named.first_row..named.first_row + named.constraint.row_count(D);
             let (first, last) = (J.layout.start[rows.start], J.layout.start[rows.end]);
             let block = |blocks: &[f64], e: usize| -> Point<D> { std::array::from_fn(|k| blocks[e * D + k]) };
-            let mut entries = (first..last).map(|e| (block(self.before, e), J.entry::<D>(e)));
+            let scale = size(&J.blocks[first * D..last * D]);
+            let counts = |block: Point<D>| !(size(&block) <= VANISHED * scale);
+            let turned = |&e: &usize| {
+                let [then, now] = [block(self.before, e), J.entry::<D>(e)];
+                (counts(then) || counts(now)) && has_turned(then, now)
+            };
             self.is_active(rows.start)
-                && entries.any(|(then, now)| has_turned(then, now))
-                && self.jumps(&named.constraint)
+                && (first..last).filter(turned).any(|e| self.jumps(&named.constraint, (e - first) * D, scale))
         })
     }
 
-    /// Whether a gradient that has turned far has jumped.
-    fn jumps(&self, constraint: &Constraint) -> bool {
+    /// Whether a block of a gradient that has turned far has jumped; `at` is its place among the numbers of the
+    /// constraint's J, and `scale` the largest of these.
+    fn jumps(&self, constraint: &Constraint, at: usize, scale: f64) -> bool {
         let Passage { from, to, .. } = *self;
         let mut rows = Rows::new(Layout::new(std::iter::once(constraint), D), D, self.system.particle_count());
         let mut q = from.q.to_vec();
-        let mut gradient = |part: f64| -> Vec<f64> {
+        let mut gradient = |part: f64| -> Point<D> {
             let h = to.t - from.t;
             let (s, c) = (part * part * (3.0 - 2.0 * part), part * (1.0 - part));
             for (k, x) in q.iter_mut().enumerate() {
@@ -91,15 +98,14 @@ impl<const D: usize> Passage<'_, D> {
                 *x = (1.0 - s) * from.q[k] + s * to.q[k] + bend;
             }
             rows.evaluate(std::iter::once(constraint), Motion::<D> { q: &q, qd: to.qd, t: from.t + part * h });
-            rows.J.blocks.clone()
+            std::array::from_fn(|k| rows.J.blocks[at + k])
         };
         let (mut low, mut high) = (0.0, 1.0);
         let (mut at_low, mut at_high) = (gradient(low), gradient(high));
-        let scale = size(&at_low).min(size(&at_high));
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let at_middle = gradient(middle);
-            let (first, second) = (cosine::<D>(&at_low, &at_middle), cosine::<D>(&at_middle, &at_high));
+            let (first, second) = (cosine(at_low, at_middle), cosine(at_middle, at_high));
             if first > SMOOTH && second > SMOOTH {
                 return false;
             }
@@ -123,21 +129,16 @@ fn has_turned<const D: usize>(then: Point<D>, now: Point<D>) -> bool {
     !(now > 0.0) || then_now < 0.0 && then_now * then_now > TURNED * TURNED * then * now
 }
 
-/// The least cosine between the blocks of two gradients; −1 where one of them has lost a block.
-fn cosine<const D: usize>(a: &[f64], b: &[f64]) -> f64 {
-    let blocks = a.chunks_exact(D).zip(b.chunks_exact(D));
-    let cosines = blocks.map(|(a, b)| {
-        let [a, b]: [Point<D>; 2] = [a, b].map(|block| std::array::from_fn(|k| block[k]));
-        let (along, product) = (dot(a, b), dot(a, a) * dot(b, b));
-        if product > 0.0 {
-            along / product.sqrt()
-        } else if dot(a, a) == 0.0 && dot(b, b) == 0.0 {
-            1.0
-        } else {
-            -1.0
-        }
-    });
-    cosines.fold(1.0, f64::min)
+/// The cosine between two blocks; −1 where one of them is lost.
+fn cosine<const D: usize>(a: Point<D>, b: Point<D>) -> f64 {
+    let (along, product) = (dot(a, b), dot(a, a) * dot(b, b));
+    if product > 0.0 {
+        along / product.sqrt()
+    } else if dot(a, a) == 0.0 && dot(b, b) == 0.0 {
+        1.0
+    } else {
+        -1.0
+    }
 }
 
 /// max |x_i|; infinite if one is not a number.

@@ -74,8 +74,13 @@ pub(super) trait Field {
         false
     }
 
-    /// Moves the feet of beads on to the motion projected last, at the time t.
+    /// Keeps the motion projected last, at the time t: moves the feet of beads on to it.
     fn follow(&mut self, _t: f64, _feet: &mut Vec<f64>) {}
+
+    /// Whether velocities of the motion that was kept last were not projected, as near a singular position.
+    fn is_unprojected(&self) -> bool {
+        false
+    }
 
     /// Gives up the motion projected last: the next call of `accelerate` is at the motion before it.
     fn turn_back(&mut self);
@@ -91,6 +96,9 @@ pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) feedback: Feedback,
     /// Whether the factor at hand is that of A at the next call of `accelerate`.
     pub(super) is_factored: bool,
+    /// Whether velocities were not projected in the last projection, and in that of the motion kept last.
+    pub(super) skips: bool,
+    pub(super) skipped: bool,
     /// J at the start of the substep, in a system with rows whose gradient may jump.
     pub(super) before: Vec<f64>,
 }
@@ -98,7 +106,8 @@ pub(super) struct GeneralField<'a, const D: usize> {
 impl<'a, const D: usize> GeneralField<'a, D> {
     /// At a motion where the rows of the workspace have been evaluated.
     pub(super) fn new(system: &'a System, workspace: &'a mut Workspace, feedback: Feedback, is_factored: bool) -> Self {
-        let mut field = GeneralField { system, workspace, feedback, is_factored, before: Vec::new() };
+        let mut field =
+            GeneralField { system, workspace, feedback, is_factored, skips: false, skipped: false, before: Vec::new() };
         field.note_gradients();
         field
     }
@@ -166,6 +175,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
                 let margin = equation.margin::<D>(system).filter(|&margin| margin > NEAR);
+                self.skips = margin.is_none();
                 if let Some(margin) = margin {
                     if margin < APPROACH {
                         for _ in 0..SHARPENED {
@@ -228,7 +238,12 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         (next < here).then(|| ahead * here / (here - next))
     }
 
+    fn is_unprojected(&self) -> bool {
+        self.skipped
+    }
+
     fn follow(&mut self, t: f64, feet: &mut Vec<f64>) {
+        self.skipped = self.skips;
         let Workspace { equation, q, qd, .. } = &mut *self.workspace;
         equation.follow_feet(self.system, Motion::<D> { q, qd, t }, feet);
         self.note_gradients();

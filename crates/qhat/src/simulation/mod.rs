@@ -65,6 +65,11 @@ impl Simulation {
         }
         check_start(&self.system, &self.state, &self.settings)?;
         let cliques = second_order(&self.system, &self.state);
+        if !cliques.is_empty() {
+            // Their rows are not left out, as the projection may have done before they were known.
+            self.state.rank = None;
+            self.workspace = Workspace::new(&self.system);
+        }
         self.system.set_second_order(cliques);
         self.account = EnergyAccount::open(&self.system, &self.state);
         self.log = WarningLog::default();

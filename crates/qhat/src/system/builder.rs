@@ -172,6 +172,7 @@ impl SystemBuilder {
             contacts: Contacts::default(),
             second_order: Vec::new(),
             second_order_rods: Vec::new(),
+            second_order_rows: Vec::new(),
             jumpy: Vec::new(),
             bead_places: Vec::new(),
         };

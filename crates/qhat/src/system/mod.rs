@@ -48,6 +48,8 @@ pub struct System {
     pub(crate) second_order: Vec<FlatClique>,
     /// The rods of these cliques, ascending.
     second_order_rods: Vec<ConstraintId>,
+    /// Their rows, ascending.
+    second_order_rows: Vec<usize>,
     /// The constraints whose gradient may jump, by their places.
     pub(crate) jumpy: Vec<usize>,
     /// The beads on curves, by their places among the constraints.
@@ -198,6 +200,7 @@ impl System {
         let others = cliques.iter().flat_map(stand_in).map(|constraint| (String::new(), constraint));
         let mut system = self.clone();
         system.set_constraints(kept.chain(others).collect());
+        system.set_second_order(Vec::new());
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
         system
     }
@@ -207,10 +210,16 @@ impl System {
         self.second_order_rods.binary_search(&ConstraintId(constraint)).is_ok()
     }
 
+    /// Whether a row belongs to such a rod.
+    pub(crate) fn is_second_order_row(&self, row: usize) -> bool {
+        self.second_order_rows.binary_search(&row).is_ok()
+    }
+
     /// Takes the cliques that are held only to second order.
     pub(crate) fn set_second_order(&mut self, cliques: Vec<FlatClique>) {
         self.second_order_rods = cliques.iter().flat_map(|clique| clique.rods.iter().copied()).collect();
         self.second_order_rods.sort_unstable();
+        self.second_order_rows = self.second_order_rods.iter().map(|id| self.constraints[id.0].first_row).collect();
         self.second_order = cliques;
     }
 

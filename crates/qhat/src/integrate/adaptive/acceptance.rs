@@ -7,7 +7,9 @@
 //! 3. every |C| is at most what `drift::attainable` says: half the constraint tolerance, against the scale of the row
 //!    and the extent of the system, which are fixed at the start;
 //! 4. the projection onto C = 0 and Ċ = 0 moved q and q̇ by at most `MOVED` tolerances, in the norm of the estimate: a
-//!    method that is right to the tolerance leaves no more to correct;
+//!    method that is right to the tolerance leaves no more to correct. Two motions may be moved further: one whose
+//!    velocities were not projected before, near a singular position, and one of joints that rods hold only to second
+//!    order;
 //! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage.
 //!
 //! A substep that is not kept is tried again with a shorter length. If the shortest is not kept either, the frame ends

@@ -94,8 +94,7 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         let Stages { q, qd, next_q, next_qd, .. } = self.stages;
         match self.field.project(next_q, next_qd, end, self.settings) {
             Projected::Met(_) if self.field.passes_an_edge(q, qd, state.t, end) => Outcome::Refused(Refusal::Edge),
-            // Rods that hold only to second order stop a motion across them as a blow would.
-            Projected::Met(_) if self.system.second_order.is_empty() && !accepts_move(self.moved(h), self.settings) => {
+            Projected::Met(_) if !self.may_move() && !accepts_move(self.moved(h), self.settings) => {
                 self.stages.recall();
                 Outcome::Refused(Refusal::Jump)
             }
@@ -139,6 +138,13 @@ impl<F: Field> PairStepper<'_, F> {
         let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
         // A system at rest to roundoff has no speed to compare with.
         fastest.max(AT_REST * self.system.extent / h)
+    }
+
+    /// Whether a projection may move the motion by more than its error: rods that hold only to second order stop a
+    /// motion across them as a blow would, and velocities that were not projected near a singular position are so
+    /// beyond it.
+    fn may_move(&self) -> bool {
+        !self.system.second_order.is_empty() || self.field.is_unprojected()
     }
 
     /// The way that the projection moved the motion, in the norm of the error estimate.

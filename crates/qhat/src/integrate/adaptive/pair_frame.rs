@@ -50,8 +50,9 @@ pub(crate) fn carry_on<const D: usize>(
     }
     run.substeps.report.solver = Solver::Rows;
     let factorizations = run.frame.factorizations();
+    let is_near = carry.as_ref().is_some_and(|carry| carry.is_nearly_singular);
     begin::<D>(run.frame, state, carry);
-    let end = run.by_rows::<D>(state);
+    let end = run.by_rows::<D>(state, is_near);
     let PairFrame { frame, mut substeps, .. } = run;
     let end = match end {
         Ok(end) => end,
@@ -94,12 +95,14 @@ impl PairFrame<'_, '_> {
     }
 
     /// The substeps of any system, which end at events where there are contacts; events are reported in any case.
-    fn by_rows<const D: usize>(&mut self, state: &mut State) -> Result<End, StepError> {
+    /// `is_near`: the state is near a singular position.
+    fn by_rows<const D: usize>(&mut self, state: &mut State, is_near: bool) -> Result<End, StepError> {
         let PairFrame { pair, frame, substeps } = self;
         let Frame { system, settings, length, ref mut workspace } = **frame;
         workspace.equation.solver.memory.forget();
         let mut stages = std::mem::take(&mut workspace.stages);
-        let field = GeneralField::<D>::new(system, workspace, Feedback::NONE, true);
+        let mut field = GeneralField::<D>::new(system, workspace, Feedback::NONE, true);
+        field.skipped = is_near;
         let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages };
         stepper.begin(state);
         let end = if system.contacts.is_empty() {

@@ -256,6 +256,7 @@ impl<'a> Substeps<'a> {
             let is_off = off > attainable(system, self.settings, largest(&tried.q));
             match refusal {
                 Some(Refusal::Balance) => return StepError::OutOfBalance { time },
+                Some(Refusal::Jump) if !is_off => return StepError::OutOfBalance { time },
                 Some(Refusal::Jump) if is_off => {
                     let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
                     return StepError::Jumps { time, row, residual };
