@@ -6,8 +6,8 @@ use std::sync::Mutex;
 /// The seeds of a test run: every family some thirty times, in under 20 s.
 const SEEDS: u64 = 390;
 
-/// Seeds in which the engine is known to be wrong: joints that rods hold only to second order. Of some thirty such
-/// seeds `implicit` or `bdf2` end two runs with an error, and `dop853` is off by 4e-4 in a velocity of 90.
+/// Seeds in which the engine is known to be wrong, of some thirty with joints that rods hold only to second order:
+/// `implicit` or `bdf2` end the run with an error, and under seed 90 a velocity of `dop853` is off by 4e-4 m/s.
 const OPEN_SEEDS: [u64; 3] = [90, 220, 285];
 
 #[test]
