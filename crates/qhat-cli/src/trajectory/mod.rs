@@ -47,7 +47,7 @@ fn as_numbers(flags: &[bool]) -> Vec<f64> {
 /// A trajectory being written.
 pub(crate) enum Recorder {
     Npz(npz::Recorder),
-    Csv(csv::Recorder),
+    Csv(Box<csv::Recorder>),
 }
 
 impl Recorder {
@@ -55,7 +55,7 @@ impl Recorder {
     pub(crate) fn new(target: Target, system: &System) -> Result<Self, Failure> {
         match target.format() {
             Format::Npz => npz::Recorder::new(target, system).map(Recorder::Npz),
-            Format::Csv => csv::Recorder::new(target, system).map(Recorder::Csv),
+            Format::Csv => csv::Recorder::new(target, system).map(|recorder| Recorder::Csv(Box::new(recorder))),
         }
     }
 

@@ -74,7 +74,7 @@ impl<const D: usize> Passage<'_, D> {
             let (first, last) = (J.layout.start[rows.start], J.layout.start[rows.end]);
             let block = |blocks: &[f64], e: usize| -> Point<D> { std::array::from_fn(|k| blocks[e * D + k]) };
             let scale = size(&J.blocks[first * D..last * D]);
-            let counts = |block: Point<D>| !(size(&block) <= VANISHED * scale);
+            let counts = |block: Point<D>| size(&block) > VANISHED * scale;
             let turned = |&e: &usize| {
                 let [then, now] = [block(self.before, e), J.entry::<D>(e)];
                 (counts(then) || counts(now)) && has_turned(then, now)
@@ -123,10 +123,10 @@ impl<const D: usize> Passage<'_, D> {
 /// Whether one block of a gradient has turned far, or been lost.
 fn has_turned<const D: usize>(then: Point<D>, now: Point<D>) -> bool {
     let (then_now, then, now) = (dot(then, now), dot(then, then), dot(now, now));
-    if !(then > 0.0) {
+    if then.is_nan() || then <= 0.0 {
         return false;
     }
-    !(now > 0.0) || then_now < 0.0 && then_now * then_now > TURNED * TURNED * then * now
+    now.is_nan() || now <= 0.0 || then_now < 0.0 && then_now * then_now > TURNED * TURNED * then * now
 }
 
 /// The cosine between two blocks; −1 where one of them is lost.

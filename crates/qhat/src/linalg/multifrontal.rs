@@ -213,15 +213,16 @@ fn factor_columns(
         let negative = &negative[begin..];
         let (w, first) = (&mut w[..begin], first + begin);
         scale(&l[..begin], before, w);
+        let pivots = [&mut *d, &mut *inverse_d];
         let pivot = match k - begin {
-            1 => factor_tiles::<1>(k, l, negative, d, inverse_d, w, first, small),
-            2 => factor_tiles::<2>(k, l, negative, d, inverse_d, w, first, small),
-            3 => factor_tiles::<3>(k, l, negative, d, inverse_d, w, first, small),
-            4 => factor_tiles::<4>(k, l, negative, d, inverse_d, w, first, small),
-            5 => factor_tiles::<5>(k, l, negative, d, inverse_d, w, first, small),
-            6 => factor_tiles::<6>(k, l, negative, d, inverse_d, w, first, small),
-            7 => factor_tiles::<7>(k, l, negative, d, inverse_d, w, first, small),
-            _ => factor_tiles::<8>(k, l, negative, d, inverse_d, w, first, small),
+            1 => factor_tiles::<1>(k, l, negative, pivots, w, first, small),
+            2 => factor_tiles::<2>(k, l, negative, pivots, w, first, small),
+            3 => factor_tiles::<3>(k, l, negative, pivots, w, first, small),
+            4 => factor_tiles::<4>(k, l, negative, pivots, w, first, small),
+            5 => factor_tiles::<5>(k, l, negative, pivots, w, first, small),
+            6 => factor_tiles::<6>(k, l, negative, pivots, w, first, small),
+            7 => factor_tiles::<7>(k, l, negative, pivots, w, first, small),
+            _ => factor_tiles::<8>(k, l, negative, pivots, w, first, small),
         };
         if pivot.is_nan() || pivot <= 0.0 {
             return pivot;
@@ -237,8 +238,7 @@ fn factor_tiles<const N: usize>(
     k: usize,
     l: &mut [Eight],
     negative: &[bool],
-    d: &mut [f64],
-    inverse_d: &mut [f64],
+    [d, inverse_d]: [&mut [f64]; 2],
     w: &[Eight],
     first: usize,
     small: &mut SmallPivots<'_>,

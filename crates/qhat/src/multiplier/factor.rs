@@ -249,8 +249,8 @@ impl MultiplierSolver {
         self.residual(matrix);
         let size = largest(&self.b);
         // A right-hand side that is not finite does not come from the matrix; the step will report it.
-        if self.is_refined && size.is_finite() && !(!self.is_perturbed && largest(&self.r) <= ACCEPTED_RESIDUAL * size)
-        {
+        let is_off = self.is_perturbed || largest(&self.r) > ACCEPTED_RESIDUAL * size;
+        if self.is_refined && size.is_finite() && is_off {
             self.refine(matrix, size);
         }
         (self.growth, self.imbalance) =

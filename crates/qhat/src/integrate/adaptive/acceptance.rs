@@ -10,8 +10,8 @@
 //!    method that is right to the tolerance leaves no more to correct. Two motions may be moved further: one whose
 //!    velocities were not projected before, near a singular position, and one of joints that rods hold only to second
 //!    order;
-//! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage, but where rods hold joints only
-//!    to second order.
+//! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage, but where rods hold joints
+//!    only to second order.
 //!
 //! A substep that is not kept is tried again with a shorter length. If the shortest is not kept either, the frame ends
 //! with an error that names the culprit of the condition that failed. The projection of a start and impacts may move

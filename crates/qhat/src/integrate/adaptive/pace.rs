@@ -92,7 +92,7 @@ impl Steady {
             self.shorten();
             return;
         }
-        let is_aligned = self.halvings == 0 || self.done % 2 == 0;
+        let is_aligned = self.halvings == 0 || self.done.is_multiple_of(2);
         if is_aligned && double > self.allowed && self.memory.calm >= self.calm_needed(double) {
             self.memory.calm = 0;
             self.allowed = double;
