@@ -90,6 +90,7 @@ else
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat --test all -- random_ long_heaps
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat-scene --test all -- hostile
 	@target/release/qhat-differ seeds 0 $$((390 * $(or $(TIMES),20)))
+	@cargo test --release --package qhat-differ --test all -- --ignored planted
 endif
 
 bits: ## compare the bits of aarch64, under emulation, with those of the golden test

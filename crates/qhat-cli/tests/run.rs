@@ -292,7 +292,8 @@ loads = [{ kind = "force", particle = "p3", force = ["-2*p3.vy + sin(3*t)", "2*p
 "#;
     let folder = Folder::with(&[("wild.toml", scene)]);
     for integrator in ["auto", "dop853", "dopri5", "rattle", "implicit", "bdf2", "rk4", "euler"] {
-        let ran = folder.qhat(&["run", "wild.toml", "--integrator", integrator, "-q"]);
+        // At the default tolerance rattle uses up its substeps before the force has grown so large.
+        let ran = folder.qhat(&["run", "wild.toml", "--integrator", integrator, "--tolerance", "1e-4", "-q"]);
         assert_eq!(ran.code, 1, "{integrator}: {}", ran.stderr);
         assert!(
             ran.stderr.starts_with("diverged: at t = ") && ran.stderr.contains("`p3`"),
