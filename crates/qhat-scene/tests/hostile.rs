@@ -69,14 +69,18 @@ fn long_texts_are_refused_and_long_lists_are_not_slow() {
     let errors = load(&long, "long", Format::Toml).unwrap_err();
     assert!(errors.errors[0].message.contains("bytes"), "{errors}");
 
-    let particles: Vec<String> =
-        (0..50_000).map(|i| format!("{{\"id\": \"p{i}\", \"at\": [{i}, 0], \"mass\": -{i}}}")).collect();
-    let text = format!(
-        "{{\"schema\": \"qhat/1\", \"name\": \"x\", \"dimension\": 2, \"particles\": [{}]}}",
-        particles.join(",")
-    );
-    let errors = load(&text, "long", Format::Json).unwrap_err();
+    let scene = |mistake: &dyn Fn(usize) -> String| {
+        let particles: Vec<String> =
+            (0..50_000).map(|i| format!("{{\"id\": \"p{i}\", \"at\": [{i}, 0], {}}}", mistake(i))).collect();
+        let list = particles.join(",");
+        format!("{{\"schema\": \"qhat/1\", \"name\": \"x\", \"dimension\": 2, \"particles\": [{list}]}}")
+    };
+    let errors = load(&scene(&|i| format!("\"weight{i}\": 1")), "long", Format::Json).unwrap_err();
     assert!(errors.more && errors.errors.len() == 20);
+
+    let text = scene(&|i| format!("\"mass\": -{i}"));
+    let errors = load(&text, "long", Format::Json).unwrap_err();
+    assert!(!errors.more && errors.errors.len() < 20, "the same mistake with other numbers is told once: {errors}");
 
     let same = text.replace("\"mass\": -", "\"mass\": 0, \"comment\": ");
     let errors = load(&same, "long", Format::Json).unwrap_err();
