@@ -90,7 +90,7 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// Parts of messages about two keys that contradict each other. A schema cannot express such rules.
-const BETWEEN_KEYS: [&str; 69] = [
+const BETWEEN_KEYS: [&str; 70] = [
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
@@ -148,6 +148,7 @@ const BETWEEN_KEYS: [&str; 69] = [
     "a curve needs",
     "gives no direction",
     "is rigid and held in the form",
+    "has no length left between",
     "has no axis in two",
     "no plane to be on",
     "is not finite everywhere",
