@@ -9,21 +9,21 @@ use crate::write::format_of;
 use qhat::{Integrator, Settings, Simulation};
 use qhat_scene::Format;
 
-/// The relative error of q̈ and Q̂ at the start that needs no reason [1].
+/// The relative error of q̈ and Q̂ at the start that needs no reason \[1\].
 const FORCES: f64 = 1e-9;
-/// Roundoff of a solve for each square of the condition of B [1]: qhat solves A = B Bᵀ, whose condition is that of B
+/// Roundoff of a solve for each square of the condition of B \[1\]: qhat solves A = B Bᵀ, whose condition is that of B
 /// squared, in numbers of 1.1e-16, and refines.
 const ROUNDOFF: f64 = 1e-14;
-/// The relative error of positions and velocities after the motion [1]: qhat is asked for 1e-10 a substep, and takes
+/// The relative error of positions and velocities after the motion \[1\]: qhat is asked for 1e-10 a substep, and takes
 /// thousands of substeps where a light particle swings on a stiff spring.
 const MOTION: f64 = 1e-6;
-/// The relative error that a constraint may keep [1]; the default of qhat is 1e-10 of the scale of its row.
+/// The relative error that a constraint may keep \[1\]; the default of qhat is 1e-10 of the scale of its row.
 const RESIDUAL: f64 = 1e-9;
-/// The same of a joint that rods hold to second order only [1]: a residual of 1e-10 lets it aside by its root.
+/// The same of a joint that rods hold to second order only \[1\]: a residual of 1e-10 lets it aside by its root.
 const SECOND_ORDER: f64 = 3e-5;
-/// The perturbation of the velocities by which the growth of errors is measured [1].
+/// The perturbation of the velocities by which the growth of errors is measured \[1\].
 const PERTURBATION: f64 = 1e-7;
-/// The growth of a perturbation above which a motion says nothing about qhat [1].
+/// The growth of a perturbation above which a motion says nothing about qhat \[1\].
 const CHAOS: f64 = 1e3;
 
 /// A number in which qhat and the reference differ.
@@ -35,9 +35,9 @@ pub struct Finding {
     pub qhat: String,
     /// The reference's number.
     pub reference: String,
-    /// The difference, relative to the size of what was compared [1].
+    /// The difference, relative to the size of what was compared \[1\].
     pub off: f64,
-    /// How far they may differ [1].
+    /// How far they may differ \[1\].
     pub allowed: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct Verdict {
     pub findings: Vec<Finding>,
     /// What was not compared, and why.
     pub skipped: Option<&'static str>,
-    /// The largest difference relative to what is allowed, of everything compared [1].
+    /// The largest difference relative to what is allowed, of everything compared \[1\].
     pub worst: f64,
 }
 
