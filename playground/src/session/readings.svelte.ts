@@ -155,7 +155,9 @@ export class Readings {
     if (projection.is_moved) changes.push(`positions by up to ${format(projection.moved)} m`);
     if (projection.is_turned) changes.push(`velocities by up to ${format(projection.velocity_changed)} m/s`);
     if (changes.length === 0) return [];
-    return [`The start did not satisfy the constraints; it was changed so that it does: ${changes.join(", ")}.`];
+    return [
+      `The start did not satisfy the constraints; it was changed so that it does: ${changes.join(', ')}.`,
+    ];
   }
 
   private readTerms(): Terms | null {
