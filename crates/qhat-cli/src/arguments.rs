@@ -9,7 +9,7 @@ use std::path::PathBuf;
 const EXIT_CODES: &str = "Exit codes:
   0  done
   1  the motion diverged, or the constraints cannot all hold; the frames reached are written, the output is marked
-  2  bad input; nothing is written
+  2  bad input, and nothing is written; or a full disk, and the frames that fit are written, the output is marked
   130  interrupted, with Ctrl-C, SIGTERM or SIGHUP; the frames reached are written, the output is marked";
 
 /// Exact dynamics of particles and constraints, with the tension in every rod and rope.

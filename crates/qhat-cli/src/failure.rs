@@ -8,9 +8,9 @@ use std::process::ExitCode;
 
 /// Exit code: the motion diverged, or the constraints cannot hold.
 pub(crate) const NOT_REACHED: u8 = 1;
-/// Exit code: the scene, an option or a file is at fault.
+/// Exit code: the scene, an option or a file is at fault; a full disk, too.
 pub(crate) const BAD_INPUT: u8 = 2;
-/// Exit code: ended by Ctrl-C, 128 + SIGINT, by the convention of shells.
+/// Exit code: ended by Ctrl-C, 128 + SIGINT, by the convention of shells; SIGTERM and SIGHUP have the same code.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 /// A message for a person and an exit code for a script.

@@ -14,9 +14,9 @@ pub(crate) enum Status {
     Done,
     /// The motion became infinite, left its constraints, or needed ever smaller steps.
     Diverged,
-    /// No positions near by satisfy the constraints.
+    /// No positions or velocities near by satisfy the constraints, or the motion has come to an edge of them.
     Infeasible,
-    /// The user pressed Ctrl-C.
+    /// A signal such as Ctrl-C ended the run, or frames could not be written.
     Interrupted,
 }
 

@@ -1,6 +1,6 @@
 //! `qhat run` on scenes with events: its messages about impacts, slip and breaks.
 
-use crate::common::{BREAKS, Folder};
+use crate::common::{BREAKS, Folder, JERKED};
 
 /// A particle that falls 0.2 m in 0.2 s onto ground without restitution.
 const LANDS: &str = r#"
@@ -38,11 +38,27 @@ fn what_broke_is_told_with_its_name_and_its_time() {
 }
 
 #[test]
+fn a_rope_that_an_impulse_breaks_is_told_with_the_impulse() {
+    let folder = Folder::with(&[("jerked.toml", JERKED)]);
+    let summary = folder.qhat(&["run", "jerked.toml", "--json"]).well().json();
+    let events = &summary["events"];
+    let impulse = events["broke"][0]["impulse"].as_f64().unwrap();
+    assert!((impulse - 2.0).abs() < 1e-12, "1 kg at 2 m/s, to rounding: {events}");
+    assert!(events["largest_impulse"].is_null(), "the rope broke before any impact: {events}");
+    let said = folder.qhat(&["run", "jerked.toml"]).well().stdout;
+    assert!(said.contains("rope(hook-ball) broke at t = 0.200000 s, by an impulse of 2.0000 N·s"), "{said}");
+}
+
+#[test]
 fn impacts_are_counted_and_quiet_runs_say_nothing_of_events() {
     let folder = Folder::with(&[("lands.toml", LANDS), ("flies.toml", &LANDS.replace("0.2]", "9.0]"))]);
     let summary = folder.qhat(&["run", "lands.toml", "--json"]).well().json();
     assert_eq!(summary["events"]["impacts"], 1, "{}", summary["events"]);
     assert_eq!(summary["events"]["broke"], serde_json::json!([]));
+    let largest = &summary["events"]["largest_impulse"];
+    // 1 kg stops from √(2 · 10 m/s² · 0.2 m) = 2 m/s; the impulse is 2 N·s to rounding.
+    assert!((largest["impulse"].as_f64().unwrap() - 2.0).abs() < 1e-12, "{largest}");
+    assert_eq!(largest["constraint"], "ground(ball)");
     let said = folder.qhat(&["run", "lands.toml"]).well().stdout;
     assert!(said.lines().any(|line| line.contains("events") && line.contains("1 impact")), "{said}");
     let said = folder.qhat(&["run", "flies.toml"]).well().stdout;

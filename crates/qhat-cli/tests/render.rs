@@ -1,6 +1,6 @@
 //! `qhat render`: pictures, read back by a parser of XML and a decoder of PNG, and input that is refused.
 
-use crate::common::{BREAKS, Folder, INFEASIBLE, PENDULUM};
+use crate::common::{BREAKS, Folder, INFEASIBLE, JERKED, PENDULUM};
 use roxmltree::Document;
 use std::path::Path;
 
@@ -89,6 +89,11 @@ fn a_broken_link_leaves_stubs_by_either_way() {
         let picture = folder.read(name);
         assert!(has_class(&picture, "broken") && drawn(&picture).0.is_empty(), "{name}");
     }
+    // A trajectory shows a link that an impulse broke as well.
+    let folder = Folder::with(&[("jerked.toml", JERKED)]);
+    folder.qhat(&["run", "jerked.toml", "-o", "run.npz", "-q"]).well();
+    folder.qhat(&["render", "jerked.toml", "-o", "from.svg", "--from", "run.npz"]).well();
+    assert!(has_class(&folder.read("from.svg"), "broken"));
     // The rods of an infeasible start have no tension and wrong lengths, but they cannot break.
     let folder = Folder::with(&[("torn.toml", INFEASIBLE)]);
     assert_eq!(folder.qhat(&["run", "torn.toml", "-o", "torn.npz", "-q"]).code, 1);

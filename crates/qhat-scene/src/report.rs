@@ -12,7 +12,7 @@ const BEFORE: usize = 40;
 /// The most characters of a name or value that a message repeats.
 const QUOTED: usize = 60;
 
-/// What is wrong, without the value that was found: the same mistake with another value is the same error.
+/// The mistake of a message, without the value that was found: the same mistake with another value is the same error.
 fn mistake(message: &str) -> &str {
     message.split(", but is ").next().unwrap_or(message)
 }

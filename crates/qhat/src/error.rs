@@ -162,13 +162,13 @@ pub enum StepError {
         time: f64,
         /// The worst row of the best try.
         row: String,
-        /// Its |C| \[C\].
+        /// Its C \[C\].
         residual: f64,
     },
     /// A drive asks for what the other constraints do not allow.
     #[error(
         "at t = {} s the drive `{drive}` asks for more than the other constraints allow: `{row}` is off by {}, \
-         and no positions near by satisfy both",
+         and no positions near by satisfy them all",
         shown(*time), Digits(residual.abs())
     )]
     DriveBlocked {
@@ -195,8 +195,8 @@ pub enum StepError {
     },
     /// A dead centre: the constraints do not say on which of two branches the motion goes on.
     #[error(
-        "at t = {} s the constraints do not decide which way to go: this is a dead centre for `{drive}`, from which \
-         more than one motion follows it. Start a little beside it, or with a velocity that decides",
+        "at t = {} s the constraints do not decide which way to go: this is a dead centre of the drive `{drive}`, \
+         which more than one motion follows. Start a little beside the dead centre, or with a velocity that decides",
         shown(*time)
     )]
     Undecided {
@@ -225,7 +225,8 @@ pub enum StepError {
         time: f64,
         /// The constraint.
         constraint: String,
-        /// The ends of the stretch without length; empty where it is none.
+        /// The ends of the stretch without length, or its one particle where the other end is a point; empty where the
+        /// constraint has no stretches.
         ends: Vec<String>,
     },
     /// The frame would need more substeps than allowed.
@@ -294,7 +295,7 @@ fn rate_left(row: &str, rate: f64, drive: Option<&str>) -> String {
         Some(drive) => format!("the drive `{drive}` asks for velocities that the other constraints do not allow"),
         None => "no velocities satisfy the constraints".to_owned(),
     };
-    format!("{cause}: `{row}` would leave zero at {rate:.3e} a second")
+    format!("{cause}: the residual of `{row}` would leave zero at {} a second", Digits(rate.abs()))
 }
 
 fn at_the_end(particle: &str, constraint: &str, end: CurveEnd) -> String {
@@ -302,11 +303,12 @@ fn at_the_end(particle: &str, constraint: &str, end: CurveEnd) -> String {
         CurveEnd::First => "first",
         CurveEnd::Last => "last",
         CurveEnd::Undefined => {
-            return format!("`{particle}` comes to a place on `{constraint}` beyond which its path has no value");
+            return format!("`{particle}` comes to a place on `{constraint}` beyond which the path has no value");
         }
     };
     format!(
-        "`{particle}` comes to the {point} point of `{constraint}`, where that ends: give it more points, or close it"
+        "`{particle}` comes to the {point} point of `{constraint}`, and the curve ends there: give the curve more \
+         points, or close it"
     )
 }
 
@@ -317,8 +319,8 @@ fn without_gradient(constraint: &str, ends: &[String]) -> String {
              defined there: write it in a form that is smooth, or keep the motion away from there"
         ),
         [end] => format!(
-            "`{constraint}` leaves `{end}` no distance from its centre, so that its force has no direction: keep them \
-             apart"
+            "`{constraint}` leaves `{end}` no distance from its centre, so that its force has no direction there: keep \
+             its size above zero"
         ),
         [a, b, ..] => format!(
             "`{constraint}` has no length left between `{a}` and `{b}`, so that its force has no direction there: keep \

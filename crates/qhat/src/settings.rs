@@ -15,8 +15,8 @@ pub enum Integrator {
     SymplecticEuler,
     /// The classical Runge–Kutta method, order 4. Drifts slowly off the constraints.
     Rk4,
-    /// [`Integrator::Dop853`] where a frame can be followed with the work allowed, [`Integrator::Bdf2`] where it
-    /// cannot.
+    /// [`Integrator::Dop853`], or [`Integrator::Radau5`] where damping or stiffness bounds its substeps, or
+    /// [`Integrator::Bdf2`] where neither can follow a frame with the work allowed.
     #[default]
     Auto,
     /// Störmer–Verlet on C(q) = 0 with velocities on Ċ = 0, order 2, symmetric; substeps of its own choosing.
@@ -25,7 +25,7 @@ pub enum Integrator {
     Dopri5,
     /// Runge–Kutta of order 8 on the equation, projected after each step; substeps of its own choosing.
     Dop853,
-    /// Radau IIA of order 5 solved at the end of each substep, projected; substeps of its own choosing that no
+    /// Radau IIA of order 5, solved at the end of each substep, projected; substeps of its own choosing, which no
     /// stiffness bounds.
     Radau5,
     /// Backward Euler solved at the end of the step, order 1, projected: takes any load at any h, and dissipates.
@@ -109,7 +109,7 @@ impl Integrator {
         }
     }
 
-    /// Global order of convergence in h; of auto that of its accurate half.
+    /// Global order of convergence in h; of auto that of dop853.
     pub fn order(self) -> u32 {
         match self {
             Integrator::Euler | Integrator::SymplecticEuler | Integrator::Implicit => 1,
@@ -179,7 +179,7 @@ pub struct Settings {
     pub h: f64,
     /// Default [`Integrator::Auto`].
     pub integrator: Integrator,
-    /// Of adaptive integrators: relative error a substep, in (0, 1), default 1e-4.
+    /// Of adaptive integrators: relative error of a substep, in (0, 1), default 1e-7.
     pub tolerance: f64,
     /// Of every projection: |C| relative to the row's own scale (a rod's length), in [1e-14, 1e-2], default 1e-10.
     pub constraint_tolerance: f64,
@@ -189,9 +189,9 @@ pub struct Settings {
     /// input gives the same bits; when it is spent the frame ends with what was reached, and a warning says how far
     /// that is.
     pub frame_budget: usize,
-    /// Of auto: row solves a frame before it goes over to bdf2, ≥ 1, default 20 million. A row takes some 5 ns in a
-    /// chain, and counts sixteenfold in anything else: at the default a frame waits for some tenths of a second. A page
-    /// that is to be in time takes a million.
+    /// Of auto: row solves a frame before bdf2 takes the place of dop853 and radau5, ≥ 1, default 20 million. A row
+    /// takes some 5 ns in a chain, and counts sixteenfold in anything else: at the default a frame waits for some
+    /// tenths of a second. A page that is to be in time takes a million.
     pub frame_work: usize,
 }
 

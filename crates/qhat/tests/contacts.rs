@@ -291,7 +291,7 @@ fn a_blow_that_is_shared_is_told() {
 /// 10 kg that fall a metre into a rope stop with an impulse of m √(2 g h). A rope that bears it stops them; a weaker
 /// one breaks, and the load falls on as if there were no rope.
 #[test]
-fn a_jerk_breaks_what_its_impulse_is_too_large_for() {
+fn an_impulse_breaks_a_rope_that_does_not_bear_it() {
     let impulse = 10.0 * (2.0 * G).sqrt();
     for (strength, breaks) in [(1.01 * impulse, false), (0.99 * impulse, true)] {
         let mut builder = System::builder(Dimension::Two);

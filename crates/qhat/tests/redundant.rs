@@ -81,8 +81,10 @@ fn a_rod_in_both_forms_moves_as_one_rod() {
             };
             let (both, one) = (run(&[DistanceForm::Length, DistanceForm::Squared]), run(&[DistanceForm::Length]));
             let off = both.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Both runs are right to the tolerance, over an extent of 1 m, and may choose other substeps.
-            assert!(off <= 1e-6, "{integrator}, h = {h}: {off:e} m");
+            // The stages of one long substep leave C = 0, where the two rows differ. With `dopri5` the runs end 1.1e-8 m
+            // apart, a hundredth of the tolerance over an extent of 1 m; with any other method at most 1e-12 m.
+            let bound = if integrator == Integrator::Dopri5 { 1e-7 } else { 1e-9 };
+            assert!(off <= bound, "{integrator}, h = {h}: {off:e} m");
         }
     }
 }
@@ -149,7 +151,7 @@ fn cranks_pass_through_flat_at_any_tolerance() {
             }
             let what = format!("{loops} loops at a tolerance of {tolerance:e}");
             let energy = simulation.energy_error_max();
-            // What the issue asks for at 1e-9 and below; above, the frame bounds the substep.
+            // At 1e-9 and below the tolerance bounds the energy; above, the frame bounds the substep before it does.
             let most = if tolerance <= 1e-9 { 1e-9 } else { 1e-7 };
             assert!(energy <= most, "{what}: energy {energy:e}");
             for k in 0..=loops {

@@ -73,6 +73,18 @@ fn a_lever_of_three_rods_has_one_degree_of_freedom_and_no_tensions() {
     }
 }
 
+/// A weight hangs from the lever by a rod whose tension is no noise.
+#[test]
+fn a_reset_goes_on_recording_tensions() {
+    let joints = [[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [1.0, -1.0]];
+    let mut simulation = Frame::plane(&joints, &[1], &[[0, 1], [1, 2], [0, 2], [2, 3]]).simulation();
+    assert_eq!(simulation.second_order().len(), 1);
+    let before = simulation.step().unwrap().max_tension;
+    assert!(before.is_some());
+    simulation.reset().unwrap();
+    assert_eq!(simulation.step().unwrap().max_tension, before);
+}
+
 /// The noise is at least 80 N, and the rods carry 33 N at most as a stiff lever would.
 #[test]
 fn noise_breaks_no_rod() {

@@ -1,4 +1,4 @@
-//! Stiff systems under radau5, and that auto takes it for them.
+//! Stiff systems under radau5, and the choice of radau5 by auto.
 
 use crate::systems::{self, FRAME, settings};
 use qhat::{
@@ -128,6 +128,7 @@ fn it_is_l_stable() {
         let size = (x * x + v * v / (z * z)).sqrt();
         // Roundoff of a few operations where |R| is almost one.
         assert!(size <= 1.0 + 1e-12, "|R({z} i)| = {size}");
+        // R(z i) → 3/(z i), of a substep of one second; one of at least a tenth leaves 30/z or less.
         assert!(z < 1e4 || size < 30.0 / z, "|R({z} i)| = {size}");
     }
 }
@@ -156,8 +157,8 @@ fn redundant_rows_are_left_out() {
     assert_eq!(total.warnings, [Warning::Singular]);
 }
 
-/// Auto looks at the rates of forces, and sees whether they bound the substeps: a damper beside a rigid rod has a rate,
-/// but never moves.
+/// Auto looks at the rates of forces, and tries whether they bound the substeps: a damper beside a rigid rod has a high
+/// rate, and never moves.
 #[test]
 fn auto_is_not_misled_by_a_rate_that_nothing_moves_at() {
     let mut builder = System::builder(Dimension::Two);
@@ -170,10 +171,10 @@ fn auto_is_not_misled_by_a_rate_that_nothing_moves_at() {
     assert_eq!(total.integrator, Integrator::Dop853);
 }
 
-/// A stiff spring without damping that oscillates in earnest must be followed, whatever its rate: dop853 does that with
+/// A stiff spring without damping that oscillates by much must be followed, whatever its rate: dop853 does that with
 /// less work.
 #[test]
-fn auto_follows_what_oscillates() {
+fn auto_follows_a_stiff_oscillation_with_dop853() {
     let mut builder = System::builder(Dimension::Two);
     let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
     let bob = builder.particle(Particle::at("bob", [1.2, 0.0]));

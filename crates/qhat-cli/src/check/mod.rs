@@ -74,7 +74,7 @@ struct Findings {
     /// Whether that change is more than the tolerance explains.
     #[serde(skip)]
     is_turned: bool,
-    /// Why `qhat run` would refuse the scene; none where it would not.
+    /// The reason for which `qhat run` would refuse the scene; none where it would not.
     refused: Option<String>,
     /// The rank of A at those positions, as are all numbers below; none where A is singular and too large to count.
     rank: Option<usize>,
@@ -206,6 +206,10 @@ impl Findings {
             count(self.rods, "rod")
         );
         let mut lines = vec![("particles", size), ("constraints", rows), ("start", self.start())];
+        if let Some(change) = self.start_velocity_changed.filter(|_| self.is_turned) {
+            let text = format!("every velocity is as the constraints allow after changes of up to {change:.3e} m/s");
+            lines.push(("velocities", text));
+        }
         match (self.rank, self.degrees_of_freedom, self.states_of_self_stress) {
             (Some(rank), Some(freedom), Some(stress)) => {
                 lines.push(("rank", format!("{rank}: {}", redundancy(stress))));
@@ -224,10 +228,6 @@ impl Findings {
             lines.push(("component", format!("and {others} smaller")));
         }
         lines.extend(self.first_frame.iter().map(|beginning| ("first frame", beginning.in_words())));
-        if let Some(change) = self.start_velocity_changed.filter(|_| self.is_turned) {
-            let text = format!("every velocity is as the constraints allow after changes of up to {change:.3e} m/s");
-            lines.insert(3, ("velocities", text));
-        }
         lines.extend(self.refused.iter().map(|reason| ("run", format!("refused: {reason}"))));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         print::table(&format!("{}: {}", self.scene, self.verdict()), &lines)
@@ -255,7 +255,7 @@ impl Findings {
     }
 }
 
-/// Why `qhat run` would refuse a scene.
+/// The reason for which `qhat run` would refuse a scene; `None` where it would not.
 fn refused(scene: &Scene) -> Option<String> {
     let frames = Frames::new(scene.duration, None, &scene.settings);
     let is_adaptive = scene.settings.integrator.is_adaptive();

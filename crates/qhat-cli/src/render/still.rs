@@ -164,8 +164,8 @@ fn broken(system: &System, state: &State, tension: &[f64]) -> Vec<usize> {
     };
     // The links of a system are its rods and limits, in their order.
     let can_break = system.constraints().iter().filter_map(|named| match &named.constraint {
-        Constraint::Distance(rod) => Some(rod.breaks_at.is_some()),
-        Constraint::Limits(limits) => Some(limits.breaks_at.is_some()),
+        Constraint::Distance(rod) => Some(rod.breaks_at.or(rod.breaks_at_impulse).is_some()),
+        Constraint::Limits(limits) => Some(limits.breaks_at.or(limits.breaks_at_impulse).is_some()),
         _ => None,
     });
     let breakable = system.links().enumerate().zip(can_break).filter(|(_, can_break)| *can_break);

@@ -12,12 +12,13 @@ pub(super) struct Events {
     opened: usize,
     slipped: usize,
     stuck: usize,
-    broke: Vec<Break>,
+    broke: Vec<Blow>,
     /// The impact with the largest impulse.
     largest_impulse: Option<Blow>,
 }
 
-/// An impact: its constraint, time \[s\] and impulse \[N·s\].
+/// An impact, or a constraint that broke: the constraint, the time \[s\] and the impulse \[N·s\], which is 0 where a
+/// tension broke the constraint.
 #[derive(Debug, PartialEq, Serialize)]
 struct Blow {
     constraint: String,
@@ -25,13 +26,11 @@ struct Blow {
     impulse: f64,
 }
 
-/// A constraint that broke, and the time \[s\].
-#[derive(Debug, PartialEq, Serialize)]
-struct Break {
-    constraint: String,
-    time: f64,
-    /// The impulse that broke it \[N·s\]; 0 where a tension did.
-    impulse: f64,
+impl Blow {
+    fn of(event: &Event) -> Self {
+        let Event { constraint, time, impulse, .. } = event.clone();
+        Blow { constraint, time, impulse }
+    }
 }
 
 impl Events {
@@ -40,18 +39,14 @@ impl Events {
             EventKind::Impact { .. } => {
                 self.impacts += 1;
                 if self.largest_impulse.as_ref().is_none_or(|former| former.impulse < event.impulse) {
-                    let Event { constraint, time, impulse, .. } = event.clone();
-                    self.largest_impulse = Some(Blow { constraint, time, impulse });
+                    self.largest_impulse = Some(Blow::of(event));
                 }
             }
             EventKind::Closed => self.closed += 1,
             EventKind::Opened => self.opened += 1,
             EventKind::Slipped => self.slipped += 1,
             EventKind::Stuck => self.stuck += 1,
-            EventKind::Broke => {
-                let Event { constraint, time, impulse, .. } = event.clone();
-                self.broke.push(Break { constraint, time, impulse });
-            }
+            EventKind::Broke => self.broke.push(Blow::of(event)),
             // Kinds of a later engine are counted when they have a word here.
             _ => {}
         }
@@ -71,7 +66,7 @@ impl Events {
             }
         }
         let counts = (!counts.is_empty()).then(|| counts.join(", "));
-        let broke = self.broke.iter().map(|Break { constraint, time, impulse }| {
+        let broke = self.broke.iter().map(|Blow { constraint, time, impulse }| {
             let cause = if *impulse > 0.0 { format!(", by an impulse of {impulse:.4} N·s") } else { String::new() };
             format!("{constraint} broke at t = {time:.6} s{cause}")
         });

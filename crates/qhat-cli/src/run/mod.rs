@@ -11,7 +11,7 @@ use crate::arguments;
 use crate::failure::{BAD_INPUT, Failure, warn};
 use crate::print;
 use crate::source::Source;
-use crate::trajectory::{Recorder, Target};
+use crate::trajectory::{Kept, Recorder, Target};
 use cpu_time::ProcessTime;
 use frames::Frames;
 use interrupt::Interrupt;
@@ -55,8 +55,15 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     job.progress.finish();
 
     origin.close(&job.tally, stopped.as_ref())?;
+    let mut is_unwritten = matches!(stopped, Some(Stop::Unwritten(_)));
     if let Some(recorder) = job.recorder {
-        recorder.finish(&serde_json::to_string(&origin).map_err(Failure::input)?)?;
+        let shortened =
+            if is_unwritten { origin.clone() } else { origin.shortened(output.as_deref().unwrap_or_default()) };
+        let [whole, part] = [&origin, &shortened].map(serde_json::to_string);
+        let (whole, part) = (whole.map_err(Failure::input)?, part.map_err(Failure::input)?);
+        if recorder.finish(&whole, &part)? == Kept::Part {
+            (origin, is_unwritten) = (shortened, true);
+        }
     }
     let summary = Summary::new(&origin, &job.tally, began.elapsed(), output);
     if arguments.json {
@@ -67,10 +74,7 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     if let Some(message) = &origin.error {
         warn(format!("{}: {message}", origin.status));
     }
-    Ok(match stopped {
-        Some(Stop::Unwritten(_)) => ExitCode::from(BAD_INPUT),
-        _ => origin.status.exit_code(),
-    })
+    Ok(if is_unwritten { ExitCode::from(BAD_INPUT) } else { origin.status.exit_code() })
 }
 
 /// The scene's settings, changed by the options of the command line.

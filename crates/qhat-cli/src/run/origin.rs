@@ -91,4 +91,14 @@ impl Origin {
         };
         Ok(())
     }
+
+    /// The same of a trajectory whose last frames could not be written to `output`.
+    pub(super) fn shortened(&self, output: &str) -> Self {
+        let unwritten = format!("cannot write all frames to `{output}`; those that fit are kept");
+        let error = match &self.error {
+            Some(error) => format!("{error}; {unwritten}"),
+            None => unwritten,
+        };
+        Origin { status: Status::Interrupted, error: Some(error), ..self.clone() }
+    }
 }

@@ -1,5 +1,6 @@
 //! CSV: a header, then one line a frame. The format has no place for the origin, which goes into FILE.csv.json.
 
+use super::Kept;
 use super::target::Target;
 use crate::failure::Failure;
 use qhat::{System, Terms};
@@ -49,19 +50,19 @@ impl Recorder {
 
     /// Puts the origin and the lines in place. On a full disk the last half of the lines is given up, again and again,
     /// until the origin fits beside the rest.
-    pub(super) fn finish(mut self, origin: &str) -> Result<(), Failure> {
-        let mut outcome = self.write();
+    pub(super) fn finish(mut self, whole: &str, part: &str) -> Result<Kept, Failure> {
+        let mut kept = if self.write().is_ok() { Kept::Whole } else { Kept::Part };
         loop {
             // The origin comes first, so that no CSV is ever without its origin.
-            let placed = self.target.put_origin(origin);
-            match placed {
-                Ok(()) => return self.target.put(self.file),
+            let origin = if kept == Kept::Whole { whole } else { part };
+            match self.target.put_origin(origin) {
+                Ok(()) => return self.target.put(self.file).map(|()| kept),
                 Err(failure) => {
                     let is_cut = self.give_up_half();
-                    if !is_cut.as_ref().is_ok_and(|is_cut| *is_cut) {
-                        return Err(outcome.err().map_or(failure, |error| self.target.cannot_write(&error)));
+                    if !is_cut.is_ok_and(|is_cut| is_cut) {
+                        return Err(failure);
                     }
-                    outcome = Ok(());
+                    kept = Kept::Part;
                 }
             }
         }
@@ -87,7 +88,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Shortens the file to about half of its lines; whether there were any behind the header.
+    /// Shortens the file to about half of its lines. Returns whether there were any behind the header.
     fn give_up_half(&mut self) -> io::Result<bool> {
         let mut text = Vec::new();
         self.file.as_file_mut().rewind()?;

@@ -44,6 +44,15 @@ fn as_numbers(flags: &[bool]) -> Vec<f64> {
     flags.iter().map(|&flag| f64::from(u8::from(flag))).collect()
 }
 
+/// The frames of a trajectory that are in its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// All frames.
+    Whole,
+    /// The first frames, as many as fit on the disk.
+    Part,
+}
+
 /// A trajectory being written.
 pub(crate) enum Recorder {
     Npz(npz::Recorder),
@@ -67,11 +76,12 @@ impl Recorder {
         }
     }
 
-    /// Puts the finished files in place, with the origin, a line of JSON.
-    pub(crate) fn finish(self, origin: &str) -> Result<(), Failure> {
+    /// Puts the finished files in place, with the origin, a line of JSON: `whole` with all frames, or `part` where the
+    /// last frames could not be written.
+    pub(crate) fn finish(self, whole: &str, part: &str) -> Result<Kept, Failure> {
         match self {
-            Recorder::Npz(recorder) => recorder.finish(origin),
-            Recorder::Csv(recorder) => recorder.finish(origin),
+            Recorder::Npz(recorder) => recorder.finish(whole, part),
+            Recorder::Csv(recorder) => recorder.finish(whole, part),
         }
     }
 }

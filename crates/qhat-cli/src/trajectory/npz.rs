@@ -1,9 +1,10 @@
 //! NPZ: a zip with an NPY file for each array, as `numpy.load` reads it, without pickles.
 //!
 //! An NPY file begins with its shape, and the number of frames is known only at the end, because a run may diverge. So
-//! each array grows in a file of its own, and the zip is written at the end. A disk that is full then keeps a part of
-//! the frames.
+//! each array grows in a file of its own, and the zip is written at the end. On a full disk the first frames are kept,
+//! as many as fit.
 
+use super::Kept;
 use super::npy;
 use super::target::Target;
 use crate::failure::Failure;
@@ -128,19 +129,22 @@ impl Recorder {
     }
 
     /// Packs the arrays. On a full disk the last half of the frames is given up, again and again, until the rest fits.
-    pub(super) fn finish(mut self, origin: &str) -> Result<(), Failure> {
+    pub(super) fn finish(mut self, whole: &str, part: &str) -> Result<Kept, Failure> {
+        let mut kept = Kept::Whole;
         if self.arrays.iter_mut().try_for_each(|array| array.file.flush()).is_err() {
             self.keep_whole_frames().map_err(|error| self.target.cannot_write(&error))?;
+            kept = Kept::Part;
         }
         loop {
-            match self.pack(origin) {
-                Ok(file) => return self.target.put(file),
+            match self.pack(if kept == Kept::Whole { whole } else { part }) {
+                Ok(file) => return self.target.put(file).map(|()| kept),
                 Err(error) if self.frames <= 1 || error.kind() != io::ErrorKind::StorageFull => {
                     return Err(self.target.cannot_write(&error));
                 }
                 Err(_) => {
                     let half = self.frames.div_ceil(2);
                     self.cut(half).map_err(|error| self.target.cannot_write(&error))?;
+                    kept = Kept::Part;
                 }
             }
         }
@@ -148,9 +152,20 @@ impl Recorder {
 
     fn pack(&mut self, origin: &str) -> io::Result<NamedTempFile> {
         let file = self.target.temporary_file()?;
+        let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
+        if let Err(error) = self.fill(&mut zip, origin) {
+            // A zip that is dropped before its end tries to write that, and prints the error.
+            std::mem::forget(zip);
+            return Err(error);
+        }
+        zip.finish()?.flush()?;
+        Ok(file)
+    }
+
+    /// Writes all members of the zip, up to its list of members.
+    fn fill(&mut self, zip: &mut ZipWriter<BufWriter<&File>>, origin: &str) -> io::Result<()> {
         // The bytes depend on the scene and the settings alone, so that two runs can be compared. They hold no date.
         let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
-        let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
         for array in &mut self.arrays {
             let shape = [&[self.frames], array.shape.as_slice()].concat();
             let numbers = array.file.get_mut();
@@ -158,7 +173,7 @@ impl Recorder {
             numbers.rewind()?;
             zip.start_file(format!("{}.npy", array.name), options.large_file(wide))?;
             zip.write_all(&npy::header(npy::FLOAT64, &shape))?;
-            io::copy(&mut BufReader::new(numbers), &mut zip)?;
+            io::copy(&mut BufReader::new(numbers), zip)?;
         }
         for (name, texts) in &self.names {
             zip.start_file(format!("{name}.npy"), options)?;
@@ -166,7 +181,6 @@ impl Recorder {
         }
         zip.start_file("origin.npy", options)?;
         zip.write_all(&npy::texts(&[], &[origin]))?;
-        zip.finish()?.flush()?;
-        Ok(file)
+        zip.flush()
     }
 }

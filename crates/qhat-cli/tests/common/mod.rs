@@ -50,6 +50,17 @@ particles = [{ id = "hook", at = [0.0, 0.0], fixed = true }, { id = "bob", at = 
 constraints = [{ kind = "distance", id = "arm", between = ["hook", "bob"], breaks_at = 20.0 }]
 "#;
 
+/// A ball that falls 0.2 m to the length of its rope, in 0.2 s; the impulse breaks the rope.
+pub(crate) const JERKED: &str = r#"
+schema = "qhat/1"
+name = "Jerked"
+dimension = 2
+step = { h = 0.01, duration = 0.5 }
+forces = { gravity = [0.0, -10.0] }
+particles = [{ id = "hook", at = [0.0, 1.0], fixed = true }, { id = "ball", at = [0.0, 0.2] }]
+constraints = [{ kind = "rope", between = ["hook", "ball"], length = 1.0, breaks_at_impulse = 1.0 }]
+"#;
+
 /// A folder to work in, which is removed at the end of the test.
 pub(crate) struct Folder(TempDir);
 

@@ -178,7 +178,7 @@ impl Polyline {
         foot
     }
 
-    /// From piece to piece, towards the end of each at which its own foot lies.
+    /// The search goes from piece to piece, towards the end of a piece at which the foot on that piece lies.
     fn foot_near<const D: usize>(&self, x: Point<D>, near: f64) -> f64 {
         let (mut i, count) = (self.piece(near).1, self.pieces.len());
         let mut forward = None;

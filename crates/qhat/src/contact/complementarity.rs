@@ -11,17 +11,17 @@
 //! Method: pivoting on modes. The modes at hand are taken to be right, their active rows are solved, and every
 //! contact that contradicts its mode changes it. Once a set of modes comes back, only the first contradicting contact
 //! changes (Murty's rule of the least index), which ends for every positive definite A without friction. With
-//! friction pivoting need not end; then `cones.rs` proposes modes to go on from. There may be no solution, or several
-//! (Painlevé); a problem that does not end is an error.
+//! friction pivoting need not end; then `pyramids.rs` proposes modes to go on from. There may be no solution, or
+//! several (Painlevé); a problem that does not end is an error.
 //!
 //! Rows of closed contacts may follow from other active rows, as the fourth leg of a table does. They are left out of A
-//! with λ = 0, so λ is that of independent rows, a vertex of all solutions. Such a contact stays closed while its w is
-//! zero; where w > 0 it opens, and where w < 0 one of the contacts that it follows from must open, which Lemke's
-//! method finds.
+//! with λ = 0, so λ is that of independent rows, a vertex of all solutions. In space λ is then spread over contacts if
+//! one of them sticks (`multiplier/sticking.rs`). A contact that was left out stays closed while its w is zero; where
+//! w > 0 it opens, and where w < 0 one of the contacts that it follows from must open, which Lemke's method finds.
 //! Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), chapter 11.
 
-use super::cones::propose;
 use super::contradictions::{align, contradictions};
+use super::pyramids::propose;
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::largest;
@@ -130,14 +130,15 @@ fn pivot<const D: usize>(
     Ok(())
 }
 
-/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand. What the factor leaves of active rows, evaluated by
-/// J W, is solved for once more: beside a load of a billion beads it is too much.
+/// λ, F and W (Jᵀλ + F), for modes and the right-hand side at hand, with λ spread over contacts.
 pub(super) fn solve<const D: usize>(equation: &mut Equation, system: &System, modes: &Modes) {
     equation.set_modes(system, modes);
     solve_refined::<D>(equation, system);
     equation.spread_over_contacts::<D>(system);
 }
 
+/// The same without the spread. The rest of the active rows, −w by J W, is solved for once more: beside a load of a
+/// billion beads it is too large.
 fn solve_refined<const D: usize>(equation: &mut Equation, system: &System) {
     equation.factor::<D>(system, 0.0);
     equation.solve_multipliers::<D>(system);

@@ -1,4 +1,4 @@
-//! Contacts that contradict their modes, and directions of slip that are not those of their slips, for λ at hand.
+//! Contacts that contradict their modes, and directions of friction that are not those of their slips, for λ at hand.
 
 use super::complementarity::{along, size, w};
 use super::roundoff::Roundoffs;
@@ -52,8 +52,8 @@ pub(super) fn contradictions<const D: usize>(
             // w_t · d < 0: the impulse would turn the slip round.
             Mode::Sliding(slip) if touching.may_stick => {
                 let w_t = along(tangents.clone().map(w));
-                let along: f64 = w_t.iter().zip(slip.direction).map(|(w, d)| w * d).sum();
-                (along < -small.w).then_some(Mode::Sticking)
+                let onward: f64 = w_t.iter().zip(slip.direction).map(|(w, d)| w * d).sum();
+                (onward < -small.w).then_some(Mode::Sticking)
             }
             Mode::Smooth | Mode::Sliding(_) => None,
         };

@@ -83,8 +83,8 @@ pub(crate) struct EventFunctions<'a> {
 }
 
 impl EventFunctions<'_> {
-    /// Writes three for each contact, for λ of independent rows, by which `complementarity.rs` decides modes; infinite
-    /// where nothing can happen.
+    /// Writes three for each contact, for λ as `complementarity.rs` decides modes by it; infinite where nothing can
+    /// happen.
     pub(crate) fn write<const D: usize>(&self, equation: &Equation, event_functions: &mut Vec<f64>) {
         let EventFunctions { system, settings, modes, rest_speed, normals } = *self;
         event_functions.clear();

@@ -1,8 +1,8 @@
 //! Touching contacts that follow from active rows, as the fourth leg of a table follows from three.
 //!
 //! With λ of independent rows, pivoting may open any one of four legs, and the leg then neither presses nor separates.
-//! It is closed again with λ = 0, left out of A: what is read of the legs is their share of the load
-//! (`multiplier/share/`), and where another leg opens this one takes its part without an impact.
+//! The leg is closed again with λ = 0, left out of A. The forces that people read are the shares of all four legs
+//! (`multiplier/share/`), and where another leg opens, this one takes its part without an impact.
 
 use super::Touching;
 use super::complementarity::{solve, w};
@@ -12,8 +12,9 @@ use crate::multiplier::Equation;
 use crate::structure::Contact;
 use crate::system::System;
 
-/// Part of the touch distance up to which a gap may stay in a contact that is closed here: half of what a projection
-/// leaves of C, since no projection can close the gap of a row that is left out.
+/// Part of the touch distance up to which a gap may stay in a contact that is closed here. It is a quarter of the
+/// constraint tolerance, half of what a projection leaves of C. No projection can close the gap of a row that is left
+/// out.
 const NO_GAP: f64 = 0.125;
 
 /// Closes open contacts whose rows follow from those that are active, for modes that are settled. λ, Q̂ and every

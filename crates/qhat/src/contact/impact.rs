@@ -13,7 +13,7 @@
 //! particle cannot bounce off both sides. Such an impact is solved with e = 0, which never gains energy.
 
 use super::complementarity::solve;
-use super::cones::propose;
+use super::pyramids::propose;
 use super::{NoConsistentModes, Touching, settle};
 use crate::modes::Modes;
 use crate::multiplier::Equation;

@@ -1,4 +1,4 @@
-//! What roundoff leaves of forces and accelerations of a contact, by the forces on its own particles.
+//! Roundoff in forces and accelerations of a contact, by the forces on its own particles.
 
 use super::Touching;
 use crate::multiplier::{Equation, SAME};
@@ -17,7 +17,7 @@ const NO_ACCELERATION: f64 = 1e-12;
 /// its own contact: a few roundings, which λ of the rows near by brings there.
 const SMALLEST: f64 = 16.0 * f64::EPSILON;
 
-/// What roundoff leaves in the rows of a contact.
+/// The roundoff in the rows of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roundoff {
     /// Of w: `NO_ACCELERATION` × (|b| + |J| W |f|), f the sum of the sizes of all forces on a particle; at least

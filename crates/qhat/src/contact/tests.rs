@@ -1,6 +1,6 @@
 //! `settle` against all sets of modes, one after the other.
 
-use super::cones::propose;
+use super::pyramids::propose;
 use super::{Touching, settle};
 use crate::modes::{Mode, Modes, Slip};
 use crate::multiplier::Equation;

@@ -11,10 +11,10 @@
 //!
 //! At |L| = 0 the direction is undefined, and the force is zero.
 
-use super::line::{Line, visit_both};
+use super::line::Line;
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::{finite, not_negative};
-use crate::linalg::block::{Block, outer, plus};
+use crate::linalg::block::{Block, outer};
 use crate::point::{Motion, add, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -101,10 +101,8 @@ impl Acts for CubicSpring {
         visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
     ) {
         let Some(line) = Line::between(motion, self.a, self.b) else { return };
-        let across = (self.pull(line.length) + self.damping * line.rate) / line.length;
-        let along = plus(line.across(across), self.along(line.length), outer(1.0, line.n, line.n));
-        let turning = outer(self.damping, line.n, line.turning(motion, self.a, self.b));
-        visit_both((self.a, self.b), plus(along, 1.0, turning), outer(self.damping, line.n, line.n), visit);
+        let pull = self.pull(line.length) + self.damping * line.rate;
+        line.linearize(motion, (self.a, self.b), [pull, self.along(line.length), self.damping], visit);
     }
 
     fn particles(&self) -> Vec<ParticleId> {

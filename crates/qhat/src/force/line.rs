@@ -43,9 +43,23 @@ impl<const D: usize> Line<D> {
     }
 
     /// ṅ = (L̇ − (L̇·n) n)/|L|, of the line from b to a.
-    pub(super) fn turning(&self, motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Point<D> {
+    fn turning(&self, motion: Motion<'_, D>, a: ParticleId, b: ParticleId) -> Point<D> {
         let Ld = minus(motion.v(a), motion.v(b));
         std::array::from_fn(|k| (Ld[k] - self.rate * self.n[k]) / self.length)
+    }
+
+    /// Calls `visit` with the blocks of a force −pull n on a and pull n on b, where pull = f(|L|) + kd L̇·n. `slope` is
+    /// ∂f/∂|L|, `damping` is kd.
+    pub(super) fn linearize(
+        &self,
+        motion: Motion<'_, D>,
+        (a, b): (ParticleId, ParticleId),
+        [pull, slope, damping]: [f64; 3],
+        visit: &mut impl FnMut(ParticleId, ParticleId, Block<D>, Block<D>),
+    ) {
+        let along = plus(self.across(pull / self.length), slope, outer(1.0, self.n, self.n));
+        let turning = outer(damping, self.n, self.turning(motion, a, b));
+        visit_both((a, b), plus(along, 1.0, turning), outer(damping, self.n, self.n), visit);
     }
 
     /// s (I − nnᵀ).

@@ -14,7 +14,7 @@
 use super::line::{Line, visit_both};
 use super::{Acts, Dependence, ForceError};
 use crate::allowed::not_negative;
-use crate::linalg::block::{Block, diagonal, outer, plus, zero};
+use crate::linalg::block::{Block, diagonal, outer, zero};
 use crate::point::{Motion, add, minus, norm, scaled};
 use crate::space::ParticleId;
 use crate::stiffness::Stiffness;
@@ -98,10 +98,8 @@ impl Acts for Spring {
             }
             return;
         };
-        let across = (self.stiffness * (line.length - self.rest) + self.damping * line.rate) / line.length;
-        let along = plus(line.across(across), self.stiffness, outer(1.0, line.n, line.n));
-        let turning = outer(self.damping, line.n, line.turning(motion, self.a, self.b));
-        visit_both((self.a, self.b), plus(along, 1.0, turning), outer(self.damping, line.n, line.n), visit);
+        let pull = self.stiffness * (line.length - self.rest) + self.damping * line.rate;
+        line.linearize(motion, (self.a, self.b), [pull, self.stiffness, self.damping], visit);
     }
 
     fn particles(&self) -> Vec<ParticleId> {

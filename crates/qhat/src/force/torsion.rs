@@ -76,8 +76,8 @@ impl<const D: usize> Arm<D> {
     }
 }
 
-/// The hinge at one motion: Δ, both arms, and Δ/sin θ and Δ cot θ of bending out of the plane, and 1/sin θ and cot θ
-/// alone, which are zero in the plane and with arms in line.
+/// The hinge at one motion: Δ, both arms, and of bending out of the plane of the arms Δ/sin θ (`by_sine`), Δ cot θ
+/// (`by_tangent`), 1/sin θ and cot θ. These four are zero in two dimensions, the last two also with arms in line.
 struct Bend<const D: usize> {
     delta: f64,
     u: Arm<D>,
@@ -143,7 +143,8 @@ impl TorsionSpring {
         [(self.a, a), (self.b, scaled(-1.0, plus_scaled(a, 1.0, c))), (self.c, c)]
     }
 
-    /// The blocks of s ∇²θ, for s and for s cot θ and s/sin θ, which have limits that s has not.
+    /// The blocks of s ∇²θ, from s, s cot θ and s/sin θ: the products are finite with arms in line, where cot θ and
+    /// 1/sin θ alone are not.
     fn curvature<const D: usize>(
         &self,
         bend: &Bend<D>,

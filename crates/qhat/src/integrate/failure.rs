@@ -4,9 +4,9 @@
 //! |---|---|
 //! | the end of a curve | [`StepError::CurveEnds`] |
 //! | a gradient that jumps or is lost | [`StepError::NoGradient`] |
-//! | a drive at a dead centre: the velocities do not say on which branch the motion goes on | [`StepError::Undecided`] |
+//! | a drive at a dead centre, from which more than one motion follows it | [`StepError::Undecided`], at a start |
 //! | a drive that the other constraints do not follow | [`StepError::DriveBlocked`] |
-//! | a rate that no velocities change | [`StepError::RateNotSatisfied`], at a start |
+//! | a rate that no velocities bring to zero | [`StepError::RateNotSatisfied`], at a start |
 //! | none of these | [`StepError::NotSatisfied`], with the row that is off most |
 //!
 //! At a dead centre rows depend on each other, and a drive still asks for an acceleration along them: no q̈ satisfies
@@ -14,7 +14,7 @@
 
 use super::Workspace;
 use super::edges::Passage;
-use crate::constraint::{Holds, Rows};
+use crate::constraint::{Constraint, Holds, NamedConstraint, Rows};
 use crate::drift::worst_row;
 use crate::error::StepError;
 use crate::point::{Motion, block, larger, minus, norm};
@@ -23,12 +23,19 @@ use crate::space::ParticleId;
 use crate::state::State;
 use crate::system::System;
 
-/// Length of an arm, relative to the extent of the system, below which it has shrunk to nothing.
+/// Length of an arm, relative to the extent of the system, below which a good motion counts as one without it. The last
+/// good motion ends before the length at which `edges.rs` counts an arm as lost, so this length is ten times as much.
 const NO_LENGTH: f64 = 1e-6;
 
 /// Part of the accelerations in a row by which J q̈ = −γ must be missed to count as a contradiction: A that is nearly
 /// singular leaves 1e-6 (`ACCEPTED_RESIDUAL` in `multiplier/factor.rs`).
 const CONTRADICTION: f64 = 1e-4;
+
+/// Number of free velocities that are tried; one would do for one free direction.
+const DIRECTIONS: usize = 4;
+
+/// A time after which a drive that stands still now has begun to move [s].
+const LATER: f64 = 1e-6;
 
 /// The error of a step from the last good state to a motion that was tried and passed an edge; `None` if it did not.
 pub(super) fn at_an_edge<const D: usize>(system: &System, state: &State, tried: Motion<'_, D>) -> Option<StepError> {
@@ -71,9 +78,15 @@ pub(super) fn shortest_arm<const D: usize>(system: &System, place: usize, q: &[f
 }
 
 fn no_gradient(system: &System, time: f64, place: usize, ends: Option<[ParticleId; 2]>) -> StepError {
-    let constraint = system.constraints[place].name.clone();
-    let ends = ends.into_iter().flatten().map(|id| system.particle_names[id.0].clone()).collect();
-    StepError::NoGradient { time, constraint, ends }
+    let NamedConstraint { name, constraint, .. } = &system.constraints[place];
+    let ends = match (ends, constraint) {
+        (Some(ends), _) => ends.to_vec(),
+        // About a point, the particle alone is an end.
+        (None, Constraint::OnSphere(_) | Constraint::OnCircle(_) | Constraint::OnEllipse(_)) => constraint.particles(),
+        (None, _) => Vec::new(),
+    };
+    let ends = ends.into_iter().map(|id| system.particle_names[id.0].clone()).collect();
+    StepError::NoGradient { time, constraint: name.clone(), ends }
 }
 
 /// The error of constraints that no positions near a motion that was tried satisfy; `rows` are those of that motion.
@@ -103,11 +116,13 @@ pub(super) fn unmet_rate(system: &System, time: f64, rows: &Rows, allowed: f64) 
 /// dead centre. `None` where it is not so.
 ///
 /// ```text
-/// e = J q̈ + γ(0) ≠ 0        what the accelerations miss, at rest, in rows that follow from others
-/// r = e − A⁻¹ A e            A⁻¹ over the other rows: Jᵀ r = 0, r·γ(0) = |e|²
-/// r·γ(v) = r·γ(0) + vᵀ (Σ r_i ∂²C_i) v        for a free velocity v, J v = 0: zero for v of some size, if the
-///                                              signs differ
+/// e = J q̈ + γ                             what the accelerations miss; zero in rows that are independent
+/// r = e − A⁻¹ J W Jᵀ e                    A⁻¹ over the independent rows, so Jᵀ r = 0 and r·γ = |e|²
+/// r·γ(v) − r·γ = vᵀ (Σ r_i ∂²C_i/∂q²) v   from rest, with a free velocity v: J v = 0
 /// ```
+///
+/// Where the last line is below zero, r·γ is zero at a velocity of some size along v, and accelerations then satisfy
+/// all rows.
 pub(super) fn undecided<const D: usize>(
     system: &System,
     state: &State,
@@ -148,7 +163,7 @@ pub(super) fn undecided<const D: usize>(
     Some(StepError::Undecided { time: state.t, drive: drive_near(system, &soon, row)? })
 }
 
-/// r with Jᵀ r = 0 from what only rows that follow from others miss: r = e − A⁻¹ A e, A⁻¹ over the other rows.
+/// r = e − A⁻¹ J W Jᵀ e with Jᵀ r = 0, from e, which only rows that follow from others miss.
 fn without_force<const D: usize>(system: &System, workspace: &mut Workspace, mut missed: Vec<f64>) -> Vec<f64> {
     let (equation, W) = (&mut workspace.equation, &system.inverse_mass);
     let (mut moved, mut rates) = (vec![0.0; system.coordinate_count()], vec![0.0; system.row_count()]);
@@ -159,9 +174,6 @@ fn without_force<const D: usize>(system: &System, workspace: &mut Workspace, mut
     missed.iter_mut().zip(&held).for_each(|(e, held)| *e -= held);
     missed
 }
-
-/// Free velocities that are tried: one would do for one free direction.
-const DIRECTIONS: usize = 4;
 
 /// A velocity v of the order of the extent a second with J v = 0, at the motion of the equation.
 fn free_velocity<const D: usize>(system: &System, workspace: &mut Workspace, seed: usize) -> Vec<f64> {
@@ -178,9 +190,6 @@ fn free_velocity<const D: usize>(system: &System, workspace: &mut Workspace, see
     v
 }
 
-/// A time after which a drive that stands still now has begun to move [s].
-const LATER: f64 = 1e-6;
-
 /// The rows at the positions of a state, a little later: a drive that turns back has C_t = 0 for one moment.
 fn later<const D: usize>(system: &System, state: &State) -> Rows {
     let mut rows = system.rows_at::<D>(state);
@@ -188,8 +197,12 @@ fn later<const D: usize>(system: &System, state: &State) -> Rows {
     rows
 }
 
-/// The driven row that is nearest to a row, over particles that can move; the row itself if it is driven.
+/// The name of the constraint with the driven row that is nearest to a row, over particles that can move; that of the
+/// row itself if it is driven.
 fn drive_near(system: &System, rows: &Rows, row: usize) -> Option<String> {
+    if rows.Ct.iter().all(|&Ct| Ct == 0.0) {
+        return None;
+    }
     let layout = &system.layout;
     let of = |row: usize| &layout.particle[layout.start[row]..layout.start[row + 1]];
     let mut is_reached = vec![false; system.row_count()];

@@ -96,8 +96,9 @@ pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) feedback: Feedback,
     /// Whether the factor at hand is that of A at the next call of `accelerate`.
     pub(super) is_factored: bool,
-    /// Whether velocities were not projected in the last projection, and in that of the motion kept last.
+    /// Whether velocities were not projected in the last projection.
     pub(super) skips: bool,
+    /// Whether velocities were not projected in the projection of the motion kept last.
     pub(super) skipped: bool,
     /// J at the start of the substep, in a system with rows whose gradient may jump.
     pub(super) before: Vec<f64>,

@@ -8,8 +8,8 @@
 //! | `radau/` | substeps solved at their end, by an error estimate: Radau IIA of order 5 |
 //! | `events/` | the pairs on a system with contacts: substeps that end at events |
 //!
-//! `rattle.rs` is RATTLE in the frame loop, `auto.rs` chooses between DOP853 and BDF2, `projection.rs` makes a start
-//! consistent. `runge_kutta/` and `field.rs` are shared by all Runge–Kutta methods.
+//! `rattle.rs` is RATTLE in the frame loop, `auto.rs` chooses between DOP853, Radau IIA and BDF2, `projection.rs`
+//! makes a start consistent. `runge_kutta/` and `field.rs` are shared by all Runge–Kutta methods.
 //!
 //! To add an integrator: write one file here, name it in [`crate::Integrator`] with its order, and call it in
 //! `step_for`.
@@ -119,11 +119,12 @@ pub(crate) fn check_finds_events(system: &System, settings: &Settings) -> Result
 }
 
 /// Whether a simulation can start from a state as it is: the integrator locates the events that the system has, kinetic
-/// and potential energy are finite, and no contact or limit is violated beyond the tolerance of a closed one.
+/// and potential energy are finite, every stretch and arm of a constraint has a length, and no contact or limit is
+/// violated beyond the tolerance of a closed one.
 ///
 /// # Errors
-/// [`StepError::NoEvents`]; [`StepError::EnergyNotFinite`]; [`StepError::Penetrates`], of the constraint that is
-/// violated most.
+/// [`StepError::NoEvents`]; [`StepError::EnergyNotFinite`]; [`StepError::NoGradient`], of the first stretch or arm
+/// without length; [`StepError::Penetrates`], of the constraint that is violated most.
 pub fn check_start(system: &System, state: &State, settings: &Settings) -> Result<(), StepError> {
     check_finds_events(system, settings)?;
     check_energy(system, state)?;
@@ -152,7 +153,9 @@ pub fn check_start(system: &System, state: &State, settings: &Settings) -> Resul
 /// contact approaches stays: the first step resolves it as an impact, with the restitution of the contact.
 ///
 /// # Errors
-/// [`StepError::NotSatisfied`] where no such positions are found; the state stays as it was.
+/// [`StepError::NotSatisfied`] and [`StepError::DriveBlocked`] where no such positions are found,
+/// [`StepError::RateNotSatisfied`] where no such velocities exist, [`StepError::CurveEnds`] beyond the end of a curve,
+/// and [`StepError::Undecided`] at a dead centre. The state stays as it was.
 pub fn project(
     system: &System,
     state: &mut State,
@@ -162,10 +165,12 @@ pub fn project(
     settings.check()?;
     workspace.equation.solver.memory.forget();
     in_dimension!(system.dimension, D => {
+        let before = state.clone();
         let projection = projection::project::<D>(system, state, settings, workspace)?;
-        // A start on an edge, and one from which no motion follows.
+        // A curve has an end, and from a dead centre more than one motion follows a drive.
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         if let Some(error) = at_an_edge(system, state, motion).or_else(|| undecided::<D>(system, state, workspace)) {
+            *state = before;
             return Err(error);
         }
         if !system.contacts.list.is_empty() {

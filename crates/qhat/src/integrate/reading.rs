@@ -1,7 +1,7 @@
 //! λ and tensions as people read them: redundant rows share their force (`multiplier/share/`).
 //!
 //! A step needs the force Jᵀλ alone, so a share is made only where somebody reads λ: in terms, tensions, reactions and
-//! the record of the largest tension.
+//! the record of the largest tension. Systems with links that may break read it at the end of every substep.
 
 use super::Workspace;
 use crate::constraint::Holds;
@@ -114,7 +114,7 @@ impl Reading {
             rates: &equation.b,
             sliding: &equation.sliding,
         };
-        share.spread::<D>(&rows, |row| !inert[row], None, &mut equation.lambda);
+        share.spread::<D>(&rows, |row| !inert[row], &mut equation.lambda);
     }
 }
 

@@ -7,9 +7,13 @@
 use super::Workspace;
 use crate::report::MaxTension;
 use crate::settings::{Feedback, Settings};
-use crate::space::ConstraintId;
+use crate::space::{ConstraintId, in_dimension};
 use crate::state::State;
 use crate::system::System;
+
+/// Margin to a singular position below which tensions are not noted: they are ill determined there, by the error of C
+/// over the third power of a sine.
+const NEAR: f64 = 1e-2;
 
 /// The largest tension of the frame so far.
 #[derive(Clone, Debug)]
@@ -30,6 +34,10 @@ impl TensionWatch {
         let links = system.constraints.iter().enumerate().filter(|(_, named)| named.constraint.as_link().is_some());
         let tensions = self.workspace.tension(system, state, &self.feedback);
         let is_unique = self.workspace.tension_is_unique(system);
+        let margin = in_dimension!(system.dimension, D => self.workspace.equation.margin::<D>(system));
+        if margin.is_some_and(|margin| margin < NEAR) {
+            return;
+        }
         let links = links.zip(tensions).zip(is_unique);
         for (((place, _), tension), is_unique) in links.filter(|(((place, _), _), _)| !system.is_second_order(*place)) {
             let largest = MaxTension { tension, link: ConstraintId(place), time: state.t, is_unique };

@@ -82,3 +82,18 @@ impl Scalar for Complex {
         self.re.abs() + self.im.abs()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reciprocals_are_right_where_squares_overflow() {
+        let x = Complex { re: 3e200, im: -4e200 };
+        let product = x * x.reciprocal();
+        // A few roundings of numbers up to one.
+        assert!((product.re - 1.0).abs() < 1e-15 && product.im.abs() < 1e-15, "{product:?}");
+        let x = Complex { re: 0.0, im: 2.0 };
+        assert_eq!(x.reciprocal(), Complex { re: 0.0, im: -0.5 });
+    }
+}

@@ -1,21 +1,21 @@
-//! The forces of contacts, of a family of forces, that leave the cones of friction least.
+//! Of a family of λ, the one whose forces at contacts leave the round cones of friction least.
 //!
 //! ```text
 //! least  ½ Σ_k d_k²(λ + Σ_j z_j v_j) + ½ η |z|²
 //! d_k: distance [N] of the force of contact k from its cone, |λ_t| ≤ μ λ_n, or from λ_n ≥ 0 where it has no friction
 //! ```
 //!
-//! Where forces within all cones exist, these are the ones nearest to λ, off by η of it. Where none exist, what is
-//! outside is shared by all contacts, and it grows evenly from zero with the load that no cone holds: so it can be an
-//! event function.
+//! Where forces within all cones exist, the ones nearest to λ are found, off by η of it. Where none exist, all contacts
+//! share the distance, which grows evenly from zero with the load that no cone holds. So the distance can be an event
+//! function.
 //!
-//! The function is convex, and quadratic where the same contacts are outside but for the curvature of the cones.
+//! The function is convex, and quadratic, but for the curvature of the cones, where the same contacts are outside.
 //! Method: Newton's, with the least along each step. Source: Qi, Sun, A nonsmooth version of Newton's method,
 //! Mathematical Programming 58 (1993).
 
 use super::friction::eliminate;
 
-/// η: what stays outside of a cone is about this part of the forces. Contacts count as outside from 1e-10 of them
+/// η: forces stay outside of their cones by about this part of them. Contacts count as outside from 1e-10 of them
 /// (`contact/roundoff.rs`).
 const NEAREST: f64 = 1e-12;
 
@@ -39,7 +39,7 @@ pub(super) struct Member {
     pub(super) parts: Vec<[f64; 3]>,
 }
 
-/// What one contact adds to the gradient and to the Hessian by its force.
+/// The contribution of one contact outside of its cone to the gradient and to the Hessian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Outside {
     /// The shortest vector from the cone to the force.
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_cone_holds_is_shared_and_grows_from_zero() {
+    fn a_load_that_no_cone_holds_is_shared_and_grows_from_zero() {
         for beyond in [1e-6, 1e-3, 0.1] {
             let members = feet(2.5 + beyond, [1.0, 4.0]);
             let off = off(&members, &least_outside(&members, 1));

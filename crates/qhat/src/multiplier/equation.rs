@@ -213,17 +213,16 @@ impl Equation {
 
     /// The least sine between a row that is kept and the rows before it.
     fn least_sine<const D: usize>(&mut self, system: &System) -> f64 {
-        let matrix = &system.matrix;
-        let free: Vec<f64> = system.inverse_mass.iter().map(|&w| if w > 0.0 { 1.0 } else { 0.0 }).collect();
-        matrix.assemble::<D>(&self.rows.J, &free, &mut self.A);
+        self.assemble_without_masses::<D>(system);
         let dependent = self.solver.dependent().to_vec();
-        let smallest = self.solver.factor(matrix, &self.A, 0.0, &self.inactive, &dependent);
+        let smallest = self.solver.factor(&system.matrix, &self.A, 0.0, &self.inactive, &dependent);
         self.factor::<D>(system, 0.0);
         // Where the rank drops, roundoff may leave a pivot that is not positive.
         smallest.max(0.0).sqrt()
     }
 
-    /// Whether a row is left out because it follows from others at any position.
+    /// Whether a row follows from others at the position where the rank was noted. `is_left_out` asks for the factor at
+    /// hand.
     pub(crate) fn follows(&self, row: usize) -> bool {
         self.rank.as_ref().is_some_and(|rank| rank.dependent.binary_search(&(row as u32)).is_ok())
     }

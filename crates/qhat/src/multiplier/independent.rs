@@ -1,4 +1,4 @@
-//! Independent rows: which rows of J follow from the others at one position.
+//! Independent rows: which rows of J follow from the others at one position, and so are redundant.
 //!
 //! ```text
 //! g_i = s_i J_iᵀ,   s_i = 1/|J_i|                   row i as a direction: a unit vector over the free coordinates
@@ -27,7 +27,8 @@ use crate::state::Rank;
 use crate::system::System;
 use std::sync::Arc;
 
-/// Pivot below which a row waits: a tenth of a right angle. Rows that are kept at once make M_kept well conditioned.
+/// Pivot below which a row waits: the square of a sine of 0.1, an angle of 6°. Rows that are kept at once make M_kept
+/// well conditioned.
 const WAITS: f64 = 1e-2;
 
 /// Sine below which a row counts as one that follows from others. A row at an angle σ to the others changes its C by
@@ -41,12 +42,11 @@ const ROOM: usize = 10_000_000;
 impl Equation {
     /// The rows that follow from other active rows at the J at hand, ascending. The factor and A at hand are lost.
     pub(super) fn dependent_rows<const D: usize>(&mut self, system: &System) -> Vec<u32> {
-        let free: Vec<f64> = system.inverse_mass.iter().map(|&w| if w > 0.0 { 1.0 } else { 0.0 }).collect();
-        system.matrix.assemble::<D>(&self.rows.J, &free, &mut self.A);
+        let free = self.assemble_without_masses::<D>(system);
         self.solver.scale_rows(&system.matrix, &self.A, 0.0, &self.inactive, &[]);
         let coordinates = system.coordinate_count();
         let mut waits = WAITS;
-        let (mut dependent, waiting) = loop {
+        let (sure, waiting) = loop {
             let waiting = self.solver.factor_waiting(&system.matrix, waits);
             // Before a hub is eliminated, a pivot does not contain its share: it says nothing yet.
             let is_sure = |pivot: f64| system.matrix.on_hubs.is_empty() && pivot < SAME * SAME;
@@ -56,10 +56,8 @@ impl Equation {
             }
             waits *= 1e-2;
         };
-        let place_of = |&(place, _): &(usize, f64)| place;
         let mut left: Vec<(usize, Vec<f64>)> =
-            waiting.iter().map(place_of).map(|place| (place, self.across::<D>(system, &free, place))).collect();
-        let mut dependent: Vec<u32> = dependent.drain(..).map(|(place, _)| system.matrix.order[place]).collect();
+            waiting.iter().map(|&(place, _)| (place, self.across::<D>(system, &free, place))).collect();
         while let Some(best) = largest(&left) {
             let (_, mut direction) = left.swap_remove(best);
             let size = length(&direction);
@@ -69,9 +67,18 @@ impl Equation {
                 other.iter_mut().zip(&direction).for_each(|(a, b)| *a -= along * b);
             }
         }
-        dependent.extend(left.iter().map(|&(place, _)| system.matrix.order[place]));
+        let places = sure.iter().map(|&(place, _)| place).chain(left.iter().map(|&(place, _)| place));
+        let mut dependent: Vec<u32> = places.map(|place| system.matrix.order[place]).collect();
         dependent.sort_unstable();
         dependent
+    }
+
+    /// A ← J Jᵀ over coordinates that can move. Returns the numbers in place of W: 1 for a particle that can move, 0
+    /// for a fixed one.
+    pub(super) fn assemble_without_masses<const D: usize>(&mut self, system: &System) -> Vec<f64> {
+        let free: Vec<f64> = system.inverse_mass.iter().map(|&w| if w > 0.0 { 1.0 } else { 0.0 }).collect();
+        system.matrix.assemble::<D>(&self.rows.J, &free, &mut self.A);
+        free
     }
 
     /// Leaves out `rows`, which have just become active, if all of them follow from the rows that were active with

@@ -4,6 +4,9 @@
 //! `reaction.rs` (Q̂ and q̈) and `friction.rs` (F). `active.rs` keeps the rows of inactive constraints out of it,
 //! `pushes.rs` is the change of velocity by λ, and its power; `memory.rs` remembers which A is factored;
 //! `second_order.rs` finds rods that hold only to second order.
+//!
+//! Where rows are redundant, λ is not unique. Modes of contacts are decided by the λ of `sticking.rs` and `cones.rs`;
+//! people read that of `share/`.
 
 mod active;
 mod cones;
@@ -63,7 +66,7 @@ pub(crate) struct Equation {
     pub(crate) imbalance: f64,
     /// The refinement of λ by q̈.
     balance: Balance,
-    /// The rows that follow from others, with the rows active that were when they were found.
+    /// The rows that follow from others, with the rows that were active when they were found.
     pub(crate) rank: Option<Arc<Rank>>,
     /// W Jᵀλ, or W (Jᵀλ + F), as written last (`pushes.rs`): d·n numbers; empty until then.
     pub(crate) W_JT_lambda: Vec<f64>,
@@ -115,7 +118,7 @@ impl Equation {
             .left_out(&system.matrix)
             .into_iter()
             .filter(|&row| !system.matrix.inert[row] && !self.is_inactive(row))
-            .filter(|&row| self.solver.dependent().binary_search(&(row as u32)).is_err());
+            .filter(|&row| !self.is_left_out(row));
         let rows: Vec<String> = rows.map(|row| system.row_names[row].clone()).collect();
         if !rows.is_empty() {
             warnings.push(Warning::NoGradient { rows });

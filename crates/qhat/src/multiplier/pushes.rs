@@ -33,6 +33,17 @@ impl Equation {
         self.rows.J.multiply_row::<D>(row, &self.W_JT_lambda)
     }
 
+    /// λ ← 1 in a row that the factor at hand leaves out, and in the rows that it holds the λ under which J W Jᵀλ is
+    /// zero there. W Jᵀλ is to be written anew.
+    pub(crate) fn answer_to_row<const D: usize>(&mut self, system: &System, row: usize) {
+        self.lambda.fill(0.0);
+        self.lambda[row] = 1.0;
+        self.write_W_JT_lambda::<D>(system);
+        let target: Vec<f64> = (0..system.row_count()).map(|row| -self.J_W_JT_lambda::<D>(row)).collect();
+        self.solver.solve(&system.matrix, &target, &mut self.lambda);
+        self.lambda[row] += 1.0;
+    }
+
     /// Power of driven constraints, for λ as solved last [W].
     pub(crate) fn drive_power(&self, system: &System, feedback: &Feedback) -> f64 {
         (1.0 - feedback.elasticity) * energy::drive_power(system, &self.rows.Ct, &self.lambda)

@@ -6,12 +6,15 @@
 //! (`cones.rs`):
 //!
 //! ```text
-//! least Σ (|J_i| λ_i)² over the rows of contacts,   λ⁰ + Σ_D z_D v_D
-//! v_D: 1 in a row D that follows from others, −A_kk⁻¹ A_kD in the rows k that are kept         Jᵀ v_D = 0
+//! least Σ (|J_i| λ_i)² over the rows i of contacts,   λ = λ⁰ + Σ_r c_r v_r
+//! v_r: 1 in a row r that follows from others, −A_kk⁻¹ A_kr in the rows k that are kept         Jᵀ v_r = 0
 //! ```
 //!
+//! λ⁰ is that of independent rows. The v are made orthonormal in the product of that sum, one after the other, so that
+//! each takes its own part from λ⁰.
+//!
 //! Friction of a sliding contact follows its normal force, so a v with a part in that force would be another motion,
-//! and is left alone.
+//! and is not used.
 
 use super::Equation;
 use super::cones::{Member, least_outside};
@@ -39,7 +42,8 @@ impl Equation {
         let of_lambda = (self.Q_hat.clone(), self.W_JT_lambda.clone());
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for row in self.solver.dependent().to_vec() {
-            let mut v = self.without_force::<D>(system, row as usize);
+            self.answer_to_row::<D>(system, row as usize);
+            let mut v = self.lambda.clone();
             let largest = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             if self.sliding.iter().any(|contact| v[contact.normal].abs() > NONE * largest) {
                 continue;
@@ -50,7 +54,7 @@ impl Equation {
                 add(-along, u, &mut v);
             }
             let size = product(&v, &v).sqrt();
-            // What is left has no part in contacts.
+            // The rest of v has no part in contacts.
             if size.is_nan() || size <= NONE * before.max(largest * NONE) {
                 continue;
             }
@@ -96,17 +100,5 @@ impl Equation {
             }
         }
         weight
-    }
-
-    /// v_D. λ, Q̂ and W Jᵀλ at hand are lost.
-    fn without_force<const D: usize>(&mut self, system: &System, row: usize) -> Vec<f64> {
-        self.lambda.fill(0.0);
-        self.lambda[row] = 1.0;
-        self.write_W_JT_lambda::<D>(system);
-        let target: Vec<f64> = (0..system.row_count()).map(|row| -self.J_W_JT_lambda::<D>(row)).collect();
-        let mut v = vec![0.0; target.len()];
-        self.solver.solve(&system.matrix, &target, &mut v);
-        v[row] = 1.0;
-        v
     }
 }

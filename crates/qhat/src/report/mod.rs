@@ -20,9 +20,10 @@ pub struct StepReport {
     pub substeps: usize,
     /// Substeps rejected and tried again, shorter.
     pub rejected: usize,
-    /// Factorizations of A. Open chains are factored in every solve; these do not count.
+    /// Factorizations of A, or of the matrix of a step that is solved at its end. Open chains are factored in every
+    /// solve; these do not count.
     pub factorizations: usize,
-    /// Newton iterations on C(q) = 0.
+    /// Newton iterations on C(q) = 0, or on the equations of a step that is solved at its end.
     pub iterations: usize,
     /// The smallest substep \[s\].
     pub smallest_substep: f64,
@@ -183,7 +184,7 @@ pub enum Solver {
     Rows,
     /// Open chains, eight side by side.
     Chains,
-    /// Newton's method at the end of the step, with geometric stiffness.
+    /// Newton's method on a step that is solved at its end, with geometric stiffness: Radau IIA, BDF2, backward Euler.
     EndOfStep,
 }
 

@@ -100,8 +100,8 @@ impl fmt::Display for Warning {
         match self {
             Warning::Singular => f.write_str(
                 "some constraints repeat what others say, so A = J W Jᵀ is singular: the motion and the total force \
-                 are unique, the single multipliers are not, and the smallest that do it are shown. `qhat check` \
-                 counts the redundant rows",
+                 are unique, the single multipliers are not: those that elastic rods would share are shown, and \
+                 `tension_is_unique` marks them. `qhat check` counts the redundant rows",
             ),
             Warning::NoGradient { rows } => write!(
                 f,

@@ -7,7 +7,7 @@ mod look;
 
 use crate::energy::Energy;
 use crate::error::StepError;
-use crate::integrate::{Workspace, check_energy, check_start, project, step_for};
+use crate::integrate::{Workspace, check_start, project, step_for};
 use crate::multiplier::{Freedom, freedom, second_order};
 use crate::report::{Projection, StepReport, WarningLog};
 use crate::settings::Settings;
@@ -57,9 +57,8 @@ impl Simulation {
 
     fn begin(&mut self) -> Result<(), StepError> {
         self.projection = Projection::default();
+        // Also before the projection, whose error would name a constraint.
         check_start(&self.system, &self.state, &self.settings)?;
-        // Before the projection, whose error would name a constraint.
-        check_energy(&self.system, &self.state)?;
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
@@ -68,7 +67,7 @@ impl Simulation {
         if !cliques.is_empty() {
             // Their rows are not left out, as the projection may have done before they were known.
             self.state.rank = None;
-            self.workspace = Workspace::new(&self.system);
+            self.workspace = self.workspace.renewed(&self.system);
         }
         self.system.set_second_order(cliques);
         self.account = EnergyAccount::open(&self.system, &self.state);

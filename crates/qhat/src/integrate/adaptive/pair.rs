@@ -8,18 +8,33 @@ use crate::drift::Drift;
 use crate::integrate::field::Field;
 use crate::integrate::runge_kutta::{Combination, Squares, Stages, Tableau, advance};
 use crate::linalg::eight::{Largest, vector_unit};
+use crate::number::larger;
 use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
 /// Part of the extent of the system below which the way of the fastest particle in one substep counts as rest.
-pub(crate) const AT_REST: f64 = 1e-3;
+const AT_REST: f64 = 1e-3;
 
 /// Factor on the error estimate, which is a mean over all coordinates, while a large error may be in a few. With this
-/// factor and a tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100
-/// and 1000 links. At a tolerance of 1e-3 its substeps run against the bound of stability: a chain of 1000 links takes
+/// factor and a tolerance of 1e-4, `dop853` leaves energy errors of 2e-7 to 5e-5 after 2 s of chains of 100 and 1000
+/// links. At a tolerance of 1e-3 its substeps run against the bound of stability: a chain of 1000 links takes
 /// 1588 of them in place of 830 (`benches/results/workloads.csv`).
 pub(crate) const ERROR_SCALE: f64 = 4.0;
+
+/// The speed to which errors of velocities are relative [m/s], where the fastest particle has the speed `fastest`.
+pub(crate) fn reference_speed(system: &System, fastest: f64, h: f64) -> f64 {
+    // A system at rest to roundoff has no speed to compare with.
+    fastest.max(AT_REST * system.extent / h)
+}
+
+/// The norm of the error estimate: the root mean square over all coordinates, of positions relative to the extent or of
+/// velocities relative to `speed`, whichever is larger. `squares` is Σ |Δ|² of positions and of velocities.
+pub(crate) fn norm(system: &System, squares: [f64; 2], speed: f64) -> f64 {
+    let coordinates = system.coordinate_count().max(1) as f64;
+    let [q, qd] = squares.map(|sum| (sum / coordinates).sqrt());
+    larger(q / system.extent, qd / speed)
+}
 
 /// A method with an error estimate.
 #[derive(Debug)]
@@ -136,24 +151,19 @@ impl<F: Field> PairStepper<'_, F> {
 
     /// The speed to which errors of velocities are relative [m/s].
     pub(crate) fn speed(&self, h: f64) -> f64 {
-        let fastest = vector_unit().dispatch(Largest(&self.stages.next_qd));
-        // A system at rest to roundoff has no speed to compare with.
-        fastest.max(AT_REST * self.system.extent / h)
+        reference_speed(self.system, vector_unit().dispatch(Largest(&self.stages.next_qd)), h)
     }
 
     /// Whether a projection may move the motion by more than its error: rods that hold only to second order stop a
-    /// motion across them as a blow would, and velocities that were not projected near a singular position are so
-    /// beyond it.
+    /// motion across them as a blow would, and velocities that were not projected near a singular position are
+    /// projected beyond it.
     fn may_move(&self) -> bool {
         !self.system.second_order.is_empty() || self.field.is_unprojected()
     }
 
     /// The way that the projection moved the motion, in the norm of the error estimate.
     fn moved(&self, h: f64) -> f64 {
-        let coordinates = self.system.coordinate_count().max(1) as f64;
-        let [q, qd] = self.stages.moved(&self.field).map(|sum| (sum / coordinates).sqrt());
-        let moved = (q / self.system.extent).max(qd / self.speed(h));
-        if q.is_nan() || qd.is_nan() { f64::NAN } else { moved }
+        norm(self.system, self.stages.moved(&self.field), self.speed(h))
     }
 
     /// The error estimate: that of positions relative to the extent, or of velocities relative to the fastest,
@@ -170,8 +180,7 @@ impl<F: Field> PairStepper<'_, F> {
         for (fine, coarse, scale) in [(q, coarse_q, self.system.extent), (qd, coarse_qd, speed)] {
             let is_plain = self.pair.coarse.is_none() || fine == 0.0;
             let estimate = if is_plain { fine } else { fine * fine / (fine * fine + 0.01 * coarse * coarse).sqrt() };
-            let error = ERROR_SCALE * h * estimate / scale;
-            largest = if error.is_nan() { error } else { largest.max(error) };
+            largest = larger(largest, ERROR_SCALE * h * estimate / scale);
         }
         largest
     }

@@ -255,12 +255,11 @@ impl<'a> Substeps<'a> {
             let (worst, off) = worst_row(system, &rows.C);
             let is_off = off > attainable(system, self.settings, largest(&tried.q));
             match refusal {
-                Some(Refusal::Balance) => return StepError::OutOfBalance { time },
-                Some(Refusal::Jump) if !is_off => return StepError::OutOfBalance { time },
                 Some(Refusal::Jump) if is_off => {
                     let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
                     return StepError::Jumps { time, row, residual };
                 }
+                Some(Refusal::Balance | Refusal::Jump) => return StepError::OutOfBalance { time },
                 None if is_off && off.is_finite() => return not_satisfied(system, time, &rows),
                 _ => {}
             }

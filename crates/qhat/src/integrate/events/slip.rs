@@ -37,7 +37,7 @@ pub(super) struct AtStart {
     pub(super) lambda: Vec<f64>,
 }
 
-/// What the directions that turn in a substep are off by [m/s].
+/// The errors of directions that turn in a substep [m/s].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Astray {
     /// The largest part of a slip across d: the error of the substep.

@@ -13,7 +13,7 @@ use crate::state::State;
 /// of w that rods and other contacts take away; of a free particle nothing is left after the first.
 const ALIGNMENTS: usize = 20;
 
-/// What aligned directions may be off by, in tolerances.
+/// The largest K |d' − d| of directions that count as aligned, relative to the speed, in tolerances.
 const ALIGNED: f64 = 1e-3;
 
 /// Part of the error of a substep that is turned in its last alignment, below which the error is known well enough to
@@ -35,7 +35,8 @@ impl<const D: usize> EventStepper<'_, D> {
                 Outcome::Met(attempt) if accepts(attempt.error, self.run.settings) => attempt,
                 other => return Err(other),
             };
-            // Of a slip that stops: substeps shrink with it, and a speed of rest by their length would grow.
+            // The least speed that counts is a length over the frame. Over h it would grow, since substeps shrink with
+            // a slip that stops.
             let (speed, tolerance) = (self.run.speed(self.frame), self.run.settings.tolerance);
             let equation = &mut self.run.field.workspace.equation;
             let astray = self.at_start.align::<D>(self.run.system, equation, h, rest_speed);
@@ -72,7 +73,7 @@ impl<const D: usize> EventStepper<'_, D> {
         let rest_speed = rest_speed(motion.qd, &equation.WQ, *frame);
         let functions = EventFunctions { system, settings, modes, rest_speed, normals };
         functions.write::<D>(equation, event_functions);
-        // Links break by the force that redundant rows share; modes are decided by λ of independent rows.
+        // Links break by the force that redundant rows share, which is not the λ that decides modes.
         let lambda = std::mem::replace(&mut equation.lambda, solved);
         if may_break {
             reading.share_out::<D>(system, t, &Feedback::NONE, equation);

@@ -36,7 +36,6 @@ pub(crate) fn run<const D: usize>(
     method: FixedStep,
 ) -> Result<StepReport, StepError> {
     let factorizations = frame.factorizations();
-    frame.workspace.set_modes(frame.system, state);
     let work = method(frame, state);
     let warnings = frame.workspace.equation.warnings(frame.system);
     frame.workspace.equation.solver.memory.forget();

@@ -92,7 +92,6 @@ pub(crate) fn frame<const D: usize>(
         }
     };
     let before = frame.factorizations();
-    frame.workspace.set_modes(system, state);
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
         // λ of the equation is the best first guess.
         frame.workspace.solve::<D>(system, state, &Feedback::NONE);
@@ -131,7 +130,7 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             let left = budget - report.iterations.min(budget);
             let ending = self.attempt(state, h, left);
             report.iterations += ending.iterations;
-            let edge = self.edge(state).filter(|_| ending.has_converged);
+            let edge = if ending.has_converged { self.edge(state) } else { None };
             if (!ending.has_converged || edge.is_some()) && report.iterations < budget {
                 report.rejected += 1;
                 parts /= 2;
@@ -241,8 +240,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// The error after the shortest step did not converge: the culprit of a gradient that is lost, the worst row, or
-    /// where all rows are met the particle with the largest acceleration.
+    /// The error after the shortest step did not converge: it names the edge that was passed, the arm without length,
+    /// the worst row, or where all rows are met the particle with the largest acceleration.
     fn failure(&self, state: &State, ending: &Ending) -> StepError {
         let (system, time, workspace) = (self.frame.system, state.t, &*self.frame.workspace);
         if let Some(error) = self.edge(state).or_else(|| without_length::<D>(system, time, &state.q)) {
@@ -262,7 +261,7 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
         }
     }
 
-    /// Whether the step in the workspace passes an edge.
+    /// The error of the edge that the step in the workspace passes.
     fn edge(&self, state: &State) -> Option<StepError> {
         let workspace = &*self.frame.workspace;
         let tried = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: self.scratch.base.end };

@@ -1,21 +1,21 @@
 //! Radau IIA of order 5 with three stages, solved at the end of the step, with an error estimate (RADAU5). For stiff
-//! systems: stiff springs and dampers, heavy chains, whatever force has a rate far above that of the motion.
+//! systems: stiff springs and dampers, heavy chains, and all other forces whose rates are far above that of the motion.
 //!
 //! ```text
 //! q̇ = v,   M v̇ = Q(q, v, t) + J(q, t)ᵀ λ,   0 = J v + C_t            (index 2)
 //! ```
 //!
 //! at three stages, the last of which is the end of the substep (`stages.rs`). Positions and velocities are of order 5,
-//! multipliers of order 3. Afterwards q is moved onto C = 0 and v onto Ċ = 0; the shift is no larger than the error, so
-//! the order stays. The method is L-stable: what is far faster than the substep dies away within it. For stiff forces
-//! the order of what is not fast falls towards 3, that of the collocation within a substep.
+//! the multipliers of the stages of order 3. Afterwards q is moved onto C = 0 and v onto Ċ = 0; the shift is no larger
+//! than the error, so the order stays. The method is L-stable: motions far faster than the substep die away within it.
+//! With stiff forces the order of the slow motions falls towards 3, that of the collocation within a substep.
 //!
 //! The error estimate is of order 3 (`stepper.rs`), so the method is more accurate than its tolerance, most where the
 //! motion is smooth. Work of dampers and drives is the quadrature of the stages, of order 5 as well.
 //!
 //! `saddle.rs` is the matrix of Newton's method with the exact stiffness and damping of all forces and constraints,
-//! `factors.rs` its two factors. They stay for the next substep where the iteration converged quickly with them. A
-//! frame begins with factors of its own, so that a restart goes on with the same bits.
+//! `factors.rs` its two factors. The factors stay for the next substep where the iteration converged quickly with them.
+//! A frame begins with factors of its own, so that a restart goes on with the same bits.
 //!
 //! When it fails: no events are found, so a system with contacts is refused. Oscillations that must be followed cost
 //! more than with DOP853. Source: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4 and VII.6.
@@ -77,7 +77,7 @@ pub(crate) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
     carry_on::<D>(frame, state, usize::MAX).map(|(report, _)| report)
 }
 
-/// Advances the state by one frame, or as far as so many substeps go; says whether it is the whole frame.
+/// Advances the state by one frame, or as far as `limit` substeps go; says whether the frame is whole.
 pub(crate) fn carry_on<const D: usize>(
     frame: &mut Frame<'_>,
     state: &mut State,

@@ -1,10 +1,12 @@
 //! The matrix of the Newton iterations of a step.
 //!
 //! ```text
-//! M + B/κ + K/κ²   Jᵀ        κ = γ/h, and (α − i β)/h (`factors.rs`)
+//! M + B/κ + K/κ²   Jᵀ        κ = γ/h, and (α − i β)/h (`tableau.rs`)
 //! J + J̇/κ          0         J̇ = ∂(J q̇)/∂q = q̇ᵀ ∂²C/∂q²
 //!                            B = −∂Q/∂q̇,   K = −∂Q/∂q − Σ λ ∂²C/∂q²
 //! ```
+//!
+//! ∂C_t/∂q, which few drives have, is left out: Newton's method converges without it.
 //!
 //! The unknowns are the d velocities of each particle that can move (a *node*), then one multiplier for each rigid row
 //! that has a node. Nodes are eliminated in an order of little fill, each row directly after the last of its nodes:
@@ -15,7 +17,7 @@ use crate::constraint::{Holds, Rows};
 use crate::force::Acts;
 use crate::linalg::block::{accumulate, times, vector};
 use crate::linalg::{EliminationPlan, Incidence, LuPlan, NONE, Scalar, Unknown};
-use crate::point::{Motion, dot};
+use crate::point::{Motion, add, dot};
 use crate::space::ParticleId;
 use crate::system::System;
 
@@ -136,7 +138,7 @@ impl Saddle {
         }
     }
 
-    /// What is known of the unknown that is eliminated k-th.
+    /// The knowledge of the pivot of the unknown that is eliminated k-th.
     pub(super) fn kind(&self, k: usize) -> Unknown {
         match (self.plan.order[k] as usize).checked_sub(self.velocities()) {
             None => Unknown::Kept,
@@ -145,12 +147,12 @@ impl Saddle {
         }
     }
 
-    /// Velocities and multipliers.
+    /// The number of unknowns: velocities and multipliers.
     pub(super) fn unknowns(&self) -> usize {
         self.plan.unknowns()
     }
 
-    /// The velocities among the unknowns.
+    /// The number of velocities among the unknowns.
     pub(super) fn velocities(&self) -> usize {
         self.particle.len() * self.dimension
     }
@@ -251,6 +253,13 @@ impl Saddle {
         x[k] += S::real(self.mass[i]);
         for &(row, entry) in &self.gradients[self.gradients_start[i]..self.gradients_start[i + 1]] {
             x[place(row)] += S::real(self.gradient[entry * D + r]);
+        }
+    }
+
+    /// Adds x, a number for each velocity of the nodes, to the numbers of all particles.
+    pub(super) fn add_to<const D: usize>(&self, x: &[f64], numbers: &mut [f64]) {
+        for (node, &id) in self.particle.iter().enumerate() {
+            add(numbers, id, vector::<D>(x, node));
         }
     }
 

@@ -13,28 +13,29 @@
 //! J + J̇/κ          0     ·  −Δλ/κ    =     −g                  g = (T⁻¹ (J q̇ + C_t)) of its part
 //! ```
 //!
-//! with a matrix of this step or an earlier one. It converges where two changes, whose ratio is the rate,
-//! show that the next ones add up to less than the tolerance (Hairer and Wanner, IV.8).
+//! with a matrix of this step or an earlier one. The rate of convergence is the ratio of two changes. The iteration
+//! ends where the rate shows that all further changes add up to less than the tolerance (Hairer and Wanner, IV.8).
 
 use super::factors::Factors;
 use super::saddle::Saddle;
 use super::tableau::{A, C, PAIR, REAL, T, T_INVERSE, combine};
 use crate::constraint::Rows;
+use crate::integrate::adaptive::pair::reference_speed;
 use crate::linalg::{Complex, Scalar};
 use crate::point::{Motion, largest};
 use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// Most iterations of one step. A method whose changes halve reaches four digits in as many; a new matrix, or half the
-/// step, is then cheaper.
+/// Most iterations of one step. Changes that halve gain two digits in as many; a new matrix, or half the step, is then
+/// cheaper.
 pub(super) const MOST_ITERATIONS: usize = 8;
 
-/// Part of the tolerance that may be left of the iteration, at most.
+/// The error that the iteration may leave, in tolerances; √tolerance where that is less.
 const LEFT: f64 = 0.03;
 
-/// The same in constraint tolerances: a method of order 5 with an estimate of order 3 is more accurate than its
-/// tolerance, and the iteration must not spoil that.
+/// The error that the iteration may leave at most, in constraint tolerances: a method of order 5 with an estimate of
+/// order 3 is more accurate than its tolerance, and the iteration must not spoil that.
 const LEFT_OF_CONSTRAINTS: f64 = 1e4;
 
 /// Rounding of a force or of its effect on a position, relative to its size: enough for the terms of some ten forces.
@@ -187,9 +188,9 @@ impl Stages {
         }
     }
 
-    /// The scale of velocities [m/s]: the fastest particle at the start and the end of the step, or `at_rest`.
-    pub(super) fn speed(&self, step: &Step<'_>, saddle: &Saddle, at_rest: f64) -> f64 {
-        let mut fastest = largest(&step.state.qd).max(at_rest);
+    /// The speed to which errors of velocities are relative [m/s], by the fastest particle at the start and the end.
+    pub(super) fn speed(&self, step: &Step<'_>, saddle: &Saddle) -> f64 {
+        let mut fastest = largest(&step.state.qd);
         let dimension = step.system.dimension();
         for (node, id) in saddle.particle.iter().enumerate() {
             for k in 0..dimension {
@@ -197,7 +198,7 @@ impl Stages {
                 fastest = fastest.max(v.abs());
             }
         }
-        fastest
+        reference_speed(step.system, fastest, step.h)
     }
 
     /// Newton's method from the guess in z. `scale` multiplies the root mean square of a change of velocities to an

@@ -5,7 +5,7 @@ use super::stages::{Convergence, MOST_ITERATIONS, Stages, Step};
 use super::tableau::{A, ESTIMATE, REAL, combine};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
-use crate::integrate::adaptive::pair::{AT_REST, ERROR_SCALE};
+use crate::integrate::adaptive::pair::{ERROR_SCALE, norm, reference_speed};
 use crate::integrate::adaptive::{Attempt, Outcome, Refusal, Stepper, accepts, accepts_move};
 use crate::integrate::edges::Passage;
 use crate::point::{Motion, largest};
@@ -32,7 +32,7 @@ const SAFE: f64 = 0.9;
 /// A substep that would grow by less than this keeps its length, and with it its factors.
 const KEPT: f64 = 1.1;
 
-/// Rate of convergence to which the next substep may lead.
+/// Rate of convergence to which the growth of the next substep may lead.
 const CONVERGENT: f64 = 0.3;
 
 /// The factor by which a substep grows at most, and shrinks at least.
@@ -51,12 +51,13 @@ pub(super) struct RadauStepper<'a, const D: usize> {
     pub(super) lambda: Vec<f64>,
     /// What the last substep left for the next.
     pub(super) before: Option<Collocation>,
-    /// Whether a matrix is at hand, and whether it is one of this substep; whether one of the end of the substep tried
-    /// last was made.
+    /// Whether a matrix is at hand.
     pub(super) is_linearized: bool,
+    /// Whether that matrix is one of this substep.
     pub(super) is_fresh: bool,
+    /// Whether the projection tried last made a matrix of the end of its substep.
     pub(super) is_ahead: bool,
-    /// The length for which they are factored [s].
+    /// The length of the substep for which the matrix is factored [s].
     pub(super) factored_for: Option<f64>,
     /// Whether the substep tried last was rejected.
     pub(super) was_rejected: bool,
@@ -89,6 +90,7 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
             return Outcome::Met(attempt);
         }
         self.add_work(&step, &mut attempt);
+        // The motion at hand is now that of the last stage.
         let Scratch { stages, tried_q, tried_qd, .. } = &mut *self.scratch;
         tried_q.copy_from_slice(&stages.q);
         tried_qd.copy_from_slice(&stages.qd);
@@ -182,20 +184,17 @@ impl<const D: usize> RadauStepper<'_, D> {
                 }
             }
             if self.factored_for.is_some() {
-                let at_rest = AT_REST * step.system.extent / step.h;
                 self.convergence = stages.solve::<D>(step, saddle, factors, |stages| {
-                    let speed = stages.speed(step, saddle, at_rest);
-                    ERROR_SCALE * (1.0 / speed).max(step.h / step.system.extent)
+                    ERROR_SCALE * (1.0 / stages.speed(step, saddle)).max(step.h / step.system.extent)
                 });
                 if self.convergence.is_met {
                     return true;
                 }
             }
+            self.is_linearized = false;
             if self.is_fresh {
-                self.is_linearized = false;
                 return false;
             }
-            self.is_linearized = false;
         }
     }
 
@@ -229,18 +228,14 @@ impl<const D: usize> RadauStepper<'_, D> {
         let Scratch { saddle, stages, tried_q, tried_qd, .. } = &mut *self.scratch;
         tried_q.copy_from_slice(&step.state.q);
         tried_qd.copy_from_slice(&step.state.qd);
-        let speed = stages.speed(step, saddle, AT_REST * step.system.extent / step.h);
+        let speed = stages.speed(step, saddle);
         let error = self.estimate(step, speed);
         if accepts(error, self.settings) || !(self.was_rejected || self.before.is_none()) {
             return error;
         }
         let Scratch { saddle, error_q, error_qd, tried_q, tried_qd, .. } = &mut *self.scratch;
-        for (node, id) in saddle.particle.iter().enumerate() {
-            for k in 0..D {
-                tried_q[id.0 * D + k] += error_q[node * D + k];
-                tried_qd[id.0 * D + k] += error_qd[node * D + k];
-            }
-        }
+        saddle.add_to::<D>(error_q, tried_q);
+        saddle.add_to::<D>(error_qd, tried_qd);
         self.estimate(step, speed)
     }
 
@@ -280,13 +275,11 @@ impl<const D: usize> RadauStepper<'_, D> {
             squares_q += error_q[u] * error_q[u];
             squares_qd += error_qd[u] * error_qd[u];
         }
-        let coordinates = self.system.coordinate_count().max(1) as f64;
-        let [q, qd] = [squares_q, squares_qd].map(|sum| (sum / coordinates).sqrt());
-        let (q, qd) = (q / self.system.extent, qd / speed);
-        ERROR_SCALE * if q.is_nan() { q } else { qd.max(q) }
+        ERROR_SCALE * norm(self.system, [squares_q, squares_qd], speed)
     }
 
-    /// Work of forces without a potential and of drives, by the quadrature of the method.
+    /// Work of forces without a potential and of drives, by the quadrature of the method. Leaves the motion of the last
+    /// stage as the motion at hand.
     fn add_work(&mut self, step: &Step<'_>, attempt: &mut Attempt) {
         let Scratch { saddle, stages, .. } = &mut *self.scratch;
         for i in 0..3 {
@@ -301,16 +294,12 @@ impl<const D: usize> RadauStepper<'_, D> {
         }
     }
 
-    /// The way that the projection moved the motion, in the norm of the error estimate of the pairs.
+    /// The way that the projection moved the motion, in the norm of the error estimate.
     fn moved(&self, h: f64) -> f64 {
         let Scratch { stages, tried_q, tried_qd, .. } = &*self.scratch;
-        let mean = |to: &[f64], from: &[f64]| {
-            let sum: f64 = to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
-            (sum / to.len().max(1) as f64).sqrt()
-        };
-        let speed = largest(&stages.qd).max(AT_REST * self.system.extent / h);
-        let [q, qd] = [mean(&stages.q, tried_q) / self.system.extent, mean(&stages.qd, tried_qd) / speed];
-        if q.is_nan() || qd.is_nan() { f64::NAN } else { q.max(qd) }
+        let squares = |to: &[f64], from: &[f64]| to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
+        let squares = [squares(&stages.q, tried_q), squares(&stages.qd, tried_qd)];
+        norm(self.system, squares, reference_speed(self.system, largest(&stages.qd), h))
     }
 
     /// Whether the step leads over a place that no substep may pass.
@@ -344,7 +333,7 @@ impl<const D: usize> RadauStepper<'_, D> {
             for (rhs, &row) in rhs[saddle.velocities()..].iter_mut().zip(&saddle.rows) {
                 *rhs = -stages.rows.C[row];
             }
-            self.correct(step, off > DULL * last)?.add_to(|stages| &mut stages.q);
+            self.correct(step, off > DULL * last, |stages| &mut stages.q)?;
             (last, iterations) = (off, iterations + 1);
         }
         last = f64::INFINITY;
@@ -359,16 +348,17 @@ impl<const D: usize> RadauStepper<'_, D> {
             if off * system.extent <= CONSISTENT * largest(&stages.qd) {
                 break;
             }
-            self.correct(step, off > DULL * last)?.add_to(|stages| &mut stages.qd);
+            self.correct(step, off > DULL * last, |stages| &mut stages.qd)?;
             last = off;
         }
         self.scratch.stages.evaluate_rows::<D>(system, step.end);
         Some(iterations)
     }
 
-    /// Solves for the right-hand side at hand, of the rows alone. If the matrix `is_dull`, a matrix of the end of the
-    /// step is made first, once. `None` where it cannot be factored.
-    fn correct(&mut self, step: &Step<'_>, is_dull: bool) -> Option<Correction<'_, D>> {
+    /// Solves for the right-hand side at hand, of the rows alone, and adds the solution to the positions or velocities
+    /// `of` the stage. If the matrix `is_dull`, a matrix of the end of the step is made first, once. `None` where it
+    /// cannot be factored.
+    fn correct(&mut self, step: &Step<'_>, is_dull: bool, of: fn(&mut Stages) -> &mut [f64]) -> Option<()> {
         let Scratch { saddle, factors, stages, rhs, .. } = &mut *self.scratch;
         if is_dull && !self.is_ahead {
             let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.end };
@@ -380,41 +370,12 @@ impl<const D: usize> RadauStepper<'_, D> {
         }
         rhs[..saddle.velocities()].fill(0.0);
         factors.solve(saddle, rhs);
-        Some(Correction { scratch: self.scratch })
-    }
-}
-
-/// A change of positions or velocities, as the right-hand side of a [`Scratch`] has it after a solve.
-struct Correction<'a, const D: usize> {
-    scratch: &'a mut Scratch,
-}
-
-impl<const D: usize> Correction<'_, D> {
-    fn add_to(self, which: impl Fn(&mut Stages) -> &mut Vec<f64>) {
-        let Scratch { saddle, stages, rhs, .. } = self.scratch;
-        let to = which(stages);
-        for (node, id) in saddle.particle.iter().enumerate() {
-            for k in 0..D {
-                to[id.0 * D + k] += rhs[node * D + k];
-            }
-        }
+        saddle.add_to::<D>(rhs, of(stages));
+        Some(())
     }
 }
 
 /// x^¼, of square roots, which round alike everywhere.
 fn fourth_root(x: f64) -> f64 {
     x.sqrt().sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::integrate::radau::tableau::C;
-
-    /// Σ e_i z_i/h of positions needs Σ e_i c_i = −1.
-    #[test]
-    fn the_estimate_of_positions_has_no_part_of_the_velocity() {
-        let sum: f64 = ESTIMATE.iter().zip(C).map(|(e, c)| e * c).sum();
-        assert!((sum + 1.0).abs() < 1e-14, "{sum}");
-    }
 }

@@ -46,7 +46,7 @@ pub(super) const PAIR: Complex = Complex { re: 2.681_082_873_627_752_3, im: -3.0
 /// e of the error estimate (γ/h − ∂f/∂y)⁻¹ (f(y₀) + Σ e_i z_i/h).
 pub(super) const ESTIMATE: [f64; 3] = [-10.048_809_399_827_416, 1.382_142_733_160_749, -0.333_333_333_333_333_3];
 
-/// Σ_j matrix[i][j] x_j of each number, for one i.
+/// Σ_j weights_j x_j, the weights being one row of a matrix.
 #[inline(always)]
 pub(super) fn combine(weights: &[f64; 3], x: [f64; 3]) -> f64 {
     weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2]
@@ -91,7 +91,8 @@ mod tests {
         }
     }
 
-    /// f(y₀) + Σ e_i z_i/h vanishes where y is a polynomial of degree 3, and no higher: it is of order h³.
+    /// f(y₀) + Σ e_i z_i/h vanishes where y is a polynomial of degree 3, and no higher: it is of order h³. Degree 1
+    /// says Σ e_i c_i = −1, by which the estimate of positions has no part of q̇₀ (`stepper.rs`).
     #[test]
     fn the_estimate_is_of_third_order() {
         for power in 1..=4 {

@@ -94,11 +94,6 @@ impl Component {
         Component { rows, start, entry, particle, owner: known, numbers: None }
     }
 
-    /// Whether any of its rows has a flag; one flag for each row of the system.
-    pub(super) fn any(&self, flags: &[bool]) -> bool {
-        self.rows.iter().any(|&row| flags[row as usize])
-    }
-
     /// As [`super::Share::spread`], for the rows of the component.
     pub(super) fn spread<const D: usize>(
         &mut self,

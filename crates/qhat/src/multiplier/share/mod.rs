@@ -8,12 +8,12 @@
 //! λ_i ≥ 0 of ropes, struts and contacts
 //! ```
 //!
-//! Where that share would take a sticking contact out of its cone of friction, λ goes only as far towards it, from
-//! the λ by which modes were decided, as all cones of the component allow.
-//!
 //! T is the tension of a rod \[N\], L its length \[m\] and EA its own `stiffness` \[N\]; J_iᵀ λ_i is the force that a
 //! row puts on particles that can move \[N\]. Both are forces, so that neither masses nor units nor the form of a row
 //! play a part. Rows that are not rods do not deform and have no part in the energy of the rods.
+//!
+//! Where that share would take a sticking contact out of its cone of friction, λ goes only as far towards it, from
+//! the λ by which modes were decided (`../sticking.rs`), as all cones of the component allow.
 //!
 //! `component.rs` computes the share of one connected component of rows, `range.rs` and `displacements.rs` have the
 //! solves and the factor for it, and `one_sided.rs` finds the ropes and contacts that carry nothing. A component
@@ -104,13 +104,11 @@ impl Share {
 
     /// Replaces every λ that is not unique by its share, and notes which these are. `lambda` is a λ with the same force
     /// as `rows.lambda`, up to what rows that follow from others are off by, and within all cones of friction. `rigid`
-    /// tells the rows that may act at some time. Only components with one of the `dependent` rows are looked at; with
-    /// `None`, all are.
+    /// tells the rows that may act at some time.
     pub(crate) fn spread<const D: usize>(
         &mut self,
         rows: &RowsToShare<'_>,
         rigid: impl Fn(usize) -> bool,
-        dependent: Option<&[usize]>,
         lambda: &mut [f64],
     ) {
         self.set_unique(lambda.len());
@@ -119,9 +117,7 @@ impl Share {
             return;
         }
         let components = self.components.get_or_insert_with(|| find(rows.J, rows.inverse_mass, rigid));
-        let mut is_redundant = vec![dependent.is_none(); lambda.len()];
-        dependent.unwrap_or_default().iter().for_each(|&row| is_redundant[row] = true);
-        for component in components.iter_mut().filter(|component| component.any(&is_redundant)) {
+        for component in components {
             component.spread::<D>(rows, lambda, &mut self.is_unique);
         }
     }

@@ -171,13 +171,7 @@ fn separation<const D: usize>(equation: &mut Equation, system: &System, rows: &[
 
 /// A column of S: J W Jᵀλ in the given rows for λ = 1 in one row, while all rows of B hold.
 fn compliance<const D: usize>(equation: &mut Equation, system: &System, row: usize, rows: &[usize]) -> Vec<f64> {
-    equation.lambda.fill(0.0);
-    equation.lambda[row] = 1.0;
-    equation.write_W_JT_lambda::<D>(system);
-    let target: Vec<f64> = (0..system.row_count()).map(|row| -equation.J_W_JT_lambda::<D>(row)).collect();
-    let Equation { solver, lambda, .. } = &mut *equation;
-    solver.solve(&system.matrix, &target, lambda);
-    lambda[row] += 1.0;
+    equation.answer_to_row::<D>(system, row);
     equation.write_W_JT_lambda::<D>(system);
     rows.iter().map(|&row| equation.J_W_JT_lambda::<D>(row)).collect()
 }
