@@ -205,7 +205,7 @@ impl Equation {
             return None;
         }
         let margin = (self.solver.smallest_pivot() / rank.least).sqrt();
-        if margin >= APPROACH {
+        if margin >= APPROACH || rank.sine == 1.0 {
             return Some(margin);
         }
         Some(self.least_sine::<D>(system) / rank.sine)

@@ -1,5 +1,6 @@
 //! The frame of a pair: the choice of the path that solves the equation, and the substeps along that path.
 
+use super::dop853::DOP853;
 use super::pair::{Pair, PairStepper};
 use super::{End, Substeps, begin};
 use crate::chains::{Chains, TINY_PIVOT};
@@ -40,7 +41,7 @@ pub(crate) fn carry_on<const D: usize>(
         run.substeps.report.solver = Solver::Chains;
         if plan.may_lose_rank && state.rank.is_none() {
             run.frame.workspace.solve::<D>(system, state, &Feedback::NONE);
-            state.rank.clone_from(&run.frame.workspace.equation.rank);
+            state.rank = run.frame.workspace.equation.rank_to_keep::<D>(system);
         }
         match run.along_chains::<D>(plan, state) {
             Ok(End::Singular) => carry = None,
@@ -52,7 +53,17 @@ pub(crate) fn carry_on<const D: usize>(
     let factorizations = run.frame.factorizations();
     let is_near = carry.as_ref().is_some_and(|carry| carry.is_nearly_singular);
     begin::<D>(run.frame, state, carry);
-    let end = run.by_rows::<D>(state, is_near);
+    let equation = &mut run.frame.workspace.equation;
+    equation.rank = equation.rank_to_keep::<D>(system);
+    if is_near {
+        run.pair = &DOP853;
+    }
+    let mut end = run.by_rows::<D>(state, is_near);
+    if let Ok(End::Singular) = end {
+        run.pair = &DOP853;
+        begin::<D>(run.frame, state, None);
+        end = run.by_rows::<D>(state, false);
+    }
     let PairFrame { frame, mut substeps, .. } = run;
     let end = match end {
         Ok(end) => end,
@@ -87,7 +98,8 @@ impl PairFrame<'_, '_> {
             .filter(|_| plan.may_lose_rank)
             .map_or(TINY_PIVOT, |rank| APPROACH * APPROACH * rank.least);
         let field = ChainField::<D> { system, plan, chains };
-        let mut stepper = PairStepper { pair: self.pair, field, system, settings, stages: &mut stages };
+        let pair = self.pair;
+        let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages, gives_up: false };
         stepper.begin(state);
         let end = self.substeps.run(&mut stepper, state);
         workspace.stages = stages;
@@ -103,7 +115,7 @@ impl PairFrame<'_, '_> {
         let mut stages = std::mem::take(&mut workspace.stages);
         let mut field = GeneralField::<D>::new(system, workspace, Feedback::NONE, true);
         field.skipped = is_near;
-        let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages };
+        let mut stepper = PairStepper { pair, field, system, settings, stages: &mut stages, gives_up: false };
         stepper.begin(state);
         let end = if system.contacts.is_empty() {
             substeps.run(&mut stepper, state)
@@ -122,7 +134,6 @@ impl PairFrame<'_, '_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dop853::DOP853;
     use super::*;
     use crate::integrate::Workspace;
     use crate::settings::Settings;
