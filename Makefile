@@ -89,8 +89,8 @@ else
 	@echo "Trying $(or $(TIMES),20) times as many random cases as a test run does"
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat --test all -- random_ long_heaps
 	@QHAT_FUZZ=$(or $(TIMES),20) cargo test --release --package qhat-scene --test all -- hostile
-	@target/release/qhat-differ seeds 0 $$((390 * $(or $(TIMES),20)))
 	@cargo test --release --package qhat-differ --test all -- --ignored planted
+	@target/release/qhat-differ seeds 0 $$((390 * $(or $(TIMES),20)))
 endif
 
 bits: ## compare the bits of aarch64, under emulation, with those of the golden test

@@ -7,7 +7,7 @@
 //! (f g)' = f'g + f g',   (f g)" = f"g + 2 f'g' + f g",   φ(f)' = φ'(f) f',   φ(f)" = φ'(f) f" + φ"(f) f'²
 //! ```
 //!
-//! Along (q̇, 1) the two derivatives of C are Ċ and γ; along one coordinate alone the first is an entry of J.
+//! Along (q̇, 1) the two derivatives of C are Ċ and γ; along one coordinate alone the first derivative is an entry of J.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -30,7 +30,7 @@ pub enum Formula {
     Of(Function, Box<Formula>),
     /// A whole power of a formula, 2 or more.
     Power(Box<Formula>, u32),
-    /// A formula that a scene writes by a word of the expression language: the text, and what it means.
+    /// A formula that a scene writes by a word of the expression language: the text, and its meaning in coordinates.
     Written(String, Box<Formula>),
 }
 
@@ -144,8 +144,6 @@ pub enum Direction {
     Motion,
     /// One coordinate changes by 1.
     Coordinate(usize),
-    /// Time alone changes, by 1.
-    Time,
 }
 
 impl Formula {
@@ -155,7 +153,7 @@ impl Formula {
         match self {
             Formula::Number(value) | Formula::Parameter(_, value) => constant(*value),
             Formula::Time => {
-                let moves = matches!(at.along, Direction::Motion | Direction::Time);
+                let moves = at.along == Direction::Motion;
                 Along { value: at.t, first: if moves { 1.0 } else { 0.0 }, second: 0.0 }
             }
             Formula::Place(particle, axis) => {

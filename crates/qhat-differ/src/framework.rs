@@ -1,4 +1,4 @@
-//! A framework: particles, what holds them and what pushes them, and the formulas that the reference solves for it.
+//! A framework: particles, conditions, forces, and the formulas that the reference solves for it.
 //!
 //! Each kind of constraint and force becomes formulas here, and text in `write.rs`. Neither uses code of the engine.
 
@@ -9,15 +9,15 @@ use crate::formula::{Direction, Formula, Function, Join, Passing, distance, numb
 pub struct Framework {
     /// The seed.
     pub seed: u64,
-    /// What kind of framework it is, for lists of findings.
+    /// The name of its shape, for lists of findings.
     pub family: &'static str,
     /// 2 or 3.
     pub dimension: usize,
     /// The particles; every other list names them by their place here.
     pub particles: Vec<Particle>,
-    /// What holds exactly.
+    /// The conditions that hold exactly.
     pub conditions: Vec<Condition>,
-    /// What holds, if other formulas than those of the scene say it: see `generate/singular.rs`.
+    /// The rows of the reference, where they are not those of the conditions: see `generate/singular.rs`.
     pub instead: Option<Vec<Formula>>,
     /// Whether rods hold a joint to second order only, so that the equation does not determine its acceleration.
     pub second_order: bool,
@@ -48,7 +48,7 @@ pub struct Particle {
     pub fixed: bool,
 }
 
-/// What holds exactly.
+/// A condition that holds exactly.
 #[derive(Clone, Debug)]
 pub enum Condition {
     /// A rod of a length \[m\] that may depend on t.
@@ -57,7 +57,7 @@ pub enum Condition {
         between: [usize; 2],
         /// The length \[m\].
         length: Formula,
-        /// Whether the squares of the lengths are equal.
+        /// Whether the row is the difference of the squares, as under `form = "squared"`.
         squared: bool,
     },
     /// A particle at a point \[m\] that may depend on t.
@@ -103,10 +103,10 @@ pub enum Push {
     Potential(Formula),
 }
 
-/// The formulas of a framework: what the reference solves.
+/// The formulas of a framework, from which the reference computes.
 #[derive(Clone, Debug, Default)]
 pub struct Formulas {
-    /// What stays zero.
+    /// The formulas that stay zero.
     pub rows: Vec<Formula>,
     /// The potential energies \[J\].
     pub potentials: Vec<Formula>,

@@ -13,7 +13,7 @@ use crate::reference::Reference;
 const COLUMNS: usize = 8;
 /// The largest error of a step, relative to the sizes of positions and velocities [1].
 const TOLERANCE: f64 = 1e-12;
-/// The most evaluations of a motion. A motion that needs more is shortened by whoever asks.
+/// The most evaluations of a motion. A motion that needs more is not compared, so that no seed holds up a test run.
 const MOST_EVALUATIONS: usize = 20_000;
 
 /// A state on the way.

@@ -4,8 +4,9 @@
 //! B = J M^(−1/2),   y = M^(1/2) q̈,   y₀ = M^(−1/2) Q,   y = y₀ + B⁺(−γ − B y₀),   Q̂ = M q̈ − Q
 //! ```
 //!
-//! q runs over the coordinates of particles that are not fixed. Each row of B is divided by its length. How many
-//! singular values count is decided once, at the start, on J with masses of 1, where a gap must separate them.
+//! q runs over the coordinates of particles that are not fixed. Each row of B is divided by its length. The
+//! number of singular values that count is decided once, at the start, on J with masses of 1, where a gap must separate
+//! them from roundoff.
 
 use crate::dense::{Svd, dot, largest, norm};
 use crate::formula::{Along, Direction, Formula, Passing};
@@ -94,7 +95,7 @@ impl Reference {
     }
 
     /// The rank of J at a state, if a gap separates the singular values that count from roundoff.
-    pub fn certain_rank(&self, q: &[f64], qd: &[f64], t: f64) -> Option<usize> {
+    fn certain_rank(&self, q: &[f64], qd: &[f64], t: f64) -> Option<usize> {
         let mut jacobian = Vec::new();
         for row in 0..self.formulas.rows.len() {
             let mut gradient = self.gradient(&self.formulas.rows[row], &self.supports[row], q, qd, t);
@@ -207,7 +208,7 @@ impl Reference {
     }
 
     /// Moves q onto C = 0 and then q̇ onto Ċ = 0, each by the least change in the metric of the masses. Returns the
-    /// largest |C| that is left, in the unit of B.
+    /// largest |C| that is left, each divided by the length of its row of J M^(−1/2).
     pub fn project(&self, q: &mut [f64], qd: &mut [f64], t: f64) -> f64 {
         let mut left = f64::INFINITY;
         for _ in 0..8 {

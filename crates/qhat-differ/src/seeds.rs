@@ -8,20 +8,20 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What came of many seeds.
+/// The outcome of many seeds.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// The number of seeds that were compared.
     pub compared: usize,
     /// The seeds with findings, each with its family.
     pub wrong: BTreeMap<u64, &'static str>,
-    /// How often a motion was not compared, by family and reason.
+    /// The number of seeds of which not all was compared, by family and reason.
     pub skipped: BTreeMap<(&'static str, &'static str), usize>,
-    /// The largest difference relative to what is allowed, by family.
+    /// The largest difference as a part of the allowed one, by family \[1\].
     pub worst: BTreeMap<&'static str, f64>,
 }
 
-/// Compares the seeds of a range; `tell` hears of each as it ends.
+/// Compares the seeds of a range, and calls `tell` with each as it ends, from any thread.
 pub fn seeds(range: Range<u64>, tell: &(dyn Fn(u64, &Verdict) + Sync)) -> Outcome {
     let next = AtomicU64::new(range.start);
     let outcome = Mutex::new(Outcome::default());

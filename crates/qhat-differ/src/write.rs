@@ -4,7 +4,6 @@ use crate::formula::Formula;
 use crate::framework::{Condition, Framework, Push};
 use crate::random::Random;
 use qhat_scene::Format;
-use std::fmt::Write as _;
 
 /// The format of a seed: half of the seeds are in each, in every family.
 pub fn format_of(seed: u64) -> Format {
@@ -52,14 +51,14 @@ impl Value {
         };
         match self {
             // Texts of frameworks have no character that either format escapes.
-            Value::Text(text) => write!(out, "\"{text}\"").unwrap(),
-            Value::Number(number) => write!(out, "{number:?}").unwrap(),
-            Value::Whole(number) => write!(out, "{number}").unwrap(),
-            Value::Flag(flag) => write!(out, "{flag}").unwrap(),
+            Value::Text(text) => *out += &format!("\"{text}\""),
+            Value::Number(number) => *out += &format!("{number:?}"),
+            Value::Whole(number) => *out += &format!("{number}"),
+            Value::Flag(flag) => *out += &format!("{flag}"),
             Value::List(items) => join('[', ']', items.len(), &mut |i, out| items[i].write(format, out)),
             Value::Table(entries) => join('{', '}', entries.len(), &mut |i, out| {
                 let (key, value) = &entries[i];
-                write!(out, "\"{key}\"{equals}").unwrap();
+                *out += &format!("\"{key}\"{equals}");
                 value.write(format, out);
             }),
         }
@@ -69,10 +68,9 @@ impl Value {
 impl Framework {
     /// The scene as text.
     pub fn text(&self, format: Format) -> String {
-        let Value::Table(entries) = self.scene() else { unreachable!("a scene is a table") };
         let json = format == Format::Json;
         let mut out = String::new();
-        for (i, (key, value)) in entries.iter().enumerate() {
+        for (i, (key, value)) in self.scene().iter().enumerate() {
             let before = if !json {
                 ""
             } else if i == 0 {
@@ -82,7 +80,7 @@ impl Framework {
             };
             let equals = if json { ": " } else { " = " };
             let key = if json { format!("\"{key}\"") } else { key.clone() };
-            write!(out, "{before}{key}{equals}").unwrap();
+            out += &format!("{before}{key}{equals}");
             match value {
                 // One entry of a list a line, for people who read a finding. JSON and TOML both allow it.
                 Value::List(items) if matches!(items.first(), Some(Value::Table(_))) => {
@@ -131,7 +129,8 @@ impl Framework {
         text(self.particles[particle].name.clone())
     }
 
-    fn scene(&self) -> Value {
+    /// The keys of the scene, in the order of the text.
+    fn scene(&self) -> Vec<(String, Value)> {
         let mut entries = vec![
             ("schema".to_owned(), text("qhat/1")),
             ("name".to_owned(), text(format!("Seed {}, {}", self.seed, self.family))),
@@ -166,7 +165,7 @@ impl Framework {
         let springs = self.pushes.iter().filter_map(|push| self.spring(push));
         put("springs", Value::List(springs.collect()));
         put("loads", Value::List(self.pushes.iter().filter_map(|push| self.load(push)).collect()));
-        Value::Table(entries)
+        entries
     }
 
     fn condition(&self, condition: &Condition) -> Value {

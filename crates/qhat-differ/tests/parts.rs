@@ -35,7 +35,8 @@ fn start(framework: &Framework) -> Moment {
     Moment { q: framework.positions(), qd: framework.velocities(), t: 0.0 }
 }
 
-/// A pendulum that lies level, with the velocity v along its arc: q̈ = (−v²/r, −g), T = m v²/r.
+/// A pendulum that lies level, with the velocity v along its arc: q̈ = (−v²/r, −g), Q̂ = (−m v²/r, 0). The bounds are some
+/// roundoffs of 10 and of 18.
 #[test]
 fn pendulum_by_hand() {
     for squared in [false, true] {
@@ -52,7 +53,7 @@ fn pendulum_by_hand() {
 }
 
 /// A rod turns about the pivot at the rate v/r, whatever the number of steps; a spring of rest length 0 swings as a
-/// cosine of √(k/m) t.
+/// cosine of √(k/m) t. The bounds are some ten times the 1e-12 that each of the ten or so steps may be off.
 #[test]
 fn motions_of_closed_form() {
     let rod = Condition::Rod { between: [0, 1], length: number(1.0), squared: false };
@@ -67,7 +68,7 @@ fn motions_of_closed_form() {
     assert!((end.q[2] - 7.5_f64.cos()).abs() < 1e-10 && (end.qd[2] + 5.0 * 7.5_f64.sin()).abs() < 1e-9, "{end:?}");
 }
 
-/// A row that says the same twice halves its multiplier and changes nothing else; the least-norm solution of B y = c.
+/// A second row that says the same as the first changes no acceleration: the bound is some roundoffs of 9.
 #[test]
 fn redundant_rows_change_nothing() {
     let rod = |squared| Condition::Rod { between: [0, 1], length: number(1.0), squared };
@@ -80,7 +81,8 @@ fn redundant_rows_change_nothing() {
     assert!(one.iter().zip(&both).all(|(a, b)| (a - b).abs() < 1e-13), "{one:?} {both:?}");
 }
 
-/// V Σ Uᵀ gives the matrix back, and B⁺ of a matrix of known rank solves what can be solved.
+/// The rank is that of the factors, and B⁺ gives the least-norm solution y of B y = c where there is one: the bound is
+/// some hundred roundoffs of 1.
 #[test]
 fn singular_values_of_random_matrices() {
     let mut random = Random::new(1);

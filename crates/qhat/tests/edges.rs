@@ -265,6 +265,25 @@ fn a_dead_centre_is_told_by_its_drive() {
     }
 }
 
+/// A drive that comes to the end of its linkage on the way is named by every method that chooses its substeps.
+#[test]
+fn a_drive_at_the_end_of_its_linkage_is_named() {
+    let start = 2.0_f64.sqrt();
+    let mut builder = System::builder(Dimension::Two);
+    let axle = builder.particle(Particle::at("axle", [0.0, 0.0]).fixed());
+    let pin = builder.particle(Particle::at("pin", [0.0, 0.5]));
+    let slider = builder.particle(Particle::at("slider", [start, 0.0]));
+    builder.constraint("crank", Distance::new(axle, pin, 0.5));
+    builder.constraint("rod", Distance::new(pin, slider, 1.5));
+    let drive = Driven::text("sqrt(2) + 0.6*sin(t)").unwrap();
+    builder.constraint("drive", Nail::driven(slider, [drive, 0.0.into(), 0.0.into()]));
+    for integrator in ADAPTIVE {
+        let error = ended(&builder, accurate(integrator), 3.0);
+        let is_named = matches!(&error, StepError::DriveBlocked { drive, .. } if drive == "drive");
+        assert!(is_named, "{integrator}: {error}");
+    }
+}
+
 /// A drive that pulls farther than the rods reach is named, and so is one that moves a fixed particle.
 #[test]
 fn a_drive_that_asks_for_too_much_is_named() {

@@ -81,8 +81,8 @@ fn a_rod_in_both_forms_moves_as_one_rod() {
             };
             let (both, one) = (run(&[DistanceForm::Length, DistanceForm::Squared]), run(&[DistanceForm::Length]));
             let off = both.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // The stages of one long substep leave C = 0, where the two rows differ. With `dopri5` the runs end 1.1e-8 m
-            // apart, a hundredth of the tolerance over an extent of 1 m; with any other method at most 1e-12 m.
+            // The stages of one long substep leave C = 0, where the two rows differ. With `dopri5` the runs end 1.1e-8
+            // m apart, a hundredth of the tolerance over an extent of 1 m; with any other method at most 1e-12 m.
             let bound = if integrator == Integrator::Dopri5 { 1e-7 } else { 1e-9 };
             assert!(off <= bound, "{integrator}, h = {h}: {off:e} m");
         }

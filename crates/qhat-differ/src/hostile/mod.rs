@@ -1,4 +1,4 @@
-//! Hostile scenes: changed scenes, changed bytes and random expressions, and what qhat must never do with them.
+//! Hostile scenes: changed scenes, changed bytes and random expressions, and the answers that qhat must never give.
 //!
 //! No panic, no abort, no hang. A scene that can be read either ends in an error with words, or goes on with numbers
 //! that are finite, constraints that hold, and energy that is accounted for.
@@ -54,7 +54,7 @@ pub fn input(corpus: &[Value], number: u64) -> Input {
     let as_toml = random.chance(0.3).then(|| toml::to_string(&scene).ok()).flatten();
     let (text, format) = match as_toml {
         Some(text) => (text, Format::Toml),
-        // What TOML cannot say, such as null, JSON can.
+        // JSON has values that TOML lacks, such as null.
         None => (scene.to_string(), Format::Json),
     };
     let mut bytes = text.into_bytes();

@@ -18,7 +18,7 @@ const BATCH: u64 = 500;
 const HANG: Duration = Duration::from_secs(60);
 /// The memory of a worker \[KiB\]: 4 GiB. A scene of a few kilobytes that needs more is an abort elsewhere.
 const MEMORY: u64 = 4 << 20;
-/// The inputs that are kept of one kind of fault.
+/// The number of inputs with one kind of fault at which a run ends.
 const KEPT: usize = 20;
 
 fn extension(format: Format) -> &'static str {
@@ -33,7 +33,7 @@ fn extension(format: Format) -> &'static str {
 /// # Errors
 /// A file that cannot be written.
 pub fn work(folder: &Path, batch: u64) -> std::io::Result<()> {
-    // A panic is told with its input, once.
+    // `attempt` reports a panic as a fault, so its message is not printed as well.
     std::panic::set_hook(Box::new(|_| {}));
     let corpus = corpus();
     let current = folder.join(format!("current-{batch}"));
@@ -88,7 +88,9 @@ fn watch(folder: &Path, batch: u64) -> std::io::Result<()> {
     keep(folder, number, &input, &Fault { kind, seen: format!("batch {batch}") })
 }
 
-/// Tries inputs for a time, with progress; whether no fault was found.
+/// Tries inputs for a time, from the batch `first` on, with progress; whether no fault was found.
+///
+/// The folder may have inputs of earlier runs, whose batches come before `first`: they stay, and do not count.
 ///
 /// # Errors
 /// A file that cannot be written, a process that cannot be started.
@@ -97,7 +99,7 @@ pub fn fuzz(folder: &Path, duration: Duration, first: u64) -> std::io::Result<bo
     let start = Instant::now();
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
     let mut batch = first;
-    let mut told = 0;
+    let mut count = 0;
     while start.elapsed() < duration {
         let watched: std::io::Result<Vec<()>> = std::thread::scope(|scope| {
             let started: Vec<_> =
@@ -106,32 +108,33 @@ pub fn fuzz(folder: &Path, duration: Duration, first: u64) -> std::io::Result<bo
         });
         watched?;
         batch += threads;
-        let faults = faults(folder)?;
-        told = faults.values().map(Vec::len).sum();
+        let faults = faults(folder, first)?;
+        count = faults.values().map(Vec::len).sum();
         let seconds = start.elapsed().as_secs();
-        eprint!("\r{} scenes, {told} with a fault, {seconds} of {} s", (batch - first) * BATCH, duration.as_secs());
+        eprint!("\r{} scenes, {count} with a fault, {seconds} of {} s", (batch - first) * BATCH, duration.as_secs());
         if faults.values().any(|paths| paths.len() >= KEPT) {
             break;
         }
     }
     eprintln!();
-    for (kind, paths) in faults(folder)? {
+    for (kind, paths) in faults(folder, first)? {
         println!("{kind}: {} scenes", paths.len());
         for path in paths.iter().take(KEPT) {
             println!("    {}: {}", path.display(), fs::read_to_string(path.with_extension("txt"))?.trim());
         }
     }
-    Ok(told == 0)
+    Ok(count == 0)
 }
 
-/// The inputs with a fault, by kind.
-fn faults(folder: &Path) -> std::io::Result<BTreeMap<String, Vec<PathBuf>>> {
+/// The inputs with a fault of the batches from `first` on, by kind.
+fn faults(folder: &Path, first: u64) -> std::io::Result<BTreeMap<String, Vec<PathBuf>>> {
     let mut faults = BTreeMap::<String, Vec<PathBuf>>::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
         let scene = path.extension().is_some_and(|end| end == "toml" || end == "json");
-        if let (true, Some((kind, _))) = (scene, name.rsplit_once('-')) {
+        let Some((kind, number)) = name.rsplit_once('-') else { continue };
+        if scene && number.parse::<u64>().is_ok_and(|number| number >= first * BATCH) {
             faults.entry(kind.to_owned()).or_default().push(path);
         }
     }

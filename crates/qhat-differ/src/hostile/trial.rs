@@ -1,4 +1,4 @@
-//! One hostile scene: read, checked, begun and run for a few frames, and what is wrong with that.
+//! One hostile scene: it is read, checked, begun and run for a few frames, and the first fault is told.
 
 use super::Input;
 use crate::dense::largest;
@@ -17,15 +17,16 @@ const LIMITS: (usize, usize, usize) = (1000, 200, 200_000);
 const LONGEST: Duration = Duration::from_secs(10);
 /// The frames that are run.
 const FRAMES: usize = 3;
-/// Energy that may be missing, relative to the largest kinetic energy, without a warning [1].
+/// The energy that may be missing without a warning, relative to the largest kinetic energy \[1\]. qhat warns of a
+/// hundredth in one step, so three frames without a warning keep it below 0.03.
 const ENERGY: f64 = 0.1;
 
-/// What qhat did that it must never do: a word for the kind, and the particulars.
+/// A fault, an answer of qhat that no scene may get: a word for the kind, and the particulars.
 #[derive(Clone, Debug)]
 pub struct Fault {
     /// The kind of fault.
     pub kind: &'static str,
-    /// What was seen.
+    /// The particulars: a message, a number, a place.
     pub seen: String,
 }
 

@@ -91,13 +91,23 @@ fn no_gradient(system: &System, time: f64, place: usize, ends: Option<[ParticleI
 
 /// The error of constraints that no positions near a motion that was tried satisfy; `rows` are those of that motion.
 pub(super) fn not_satisfied(system: &System, time: f64, rows: &Rows) -> StepError {
+    blocked(system, time, rows).unwrap_or_else(|| {
+        let (row, residual) = worst(system, rows);
+        StepError::NotSatisfied { time, row, residual }
+    })
+}
+
+/// The same error where a drive is near the row that is off most.
+pub(super) fn blocked(system: &System, time: f64, rows: &Rows) -> Option<StepError> {
+    let drive = drive_near(system, rows, worst_row(system, &rows.C).0)?;
+    let (row, residual) = worst(system, rows);
+    Some(StepError::DriveBlocked { time, drive, row, residual })
+}
+
+/// The name of the row that is off most, and its C.
+fn worst(system: &System, rows: &Rows) -> (String, f64) {
     let (row, _) = worst_row(system, &rows.C);
-    let residual = rows.C.get(row).copied().unwrap_or_default();
-    let name = system.row_names.get(row).cloned().unwrap_or_default();
-    match drive_near(system, rows, row) {
-        Some(drive) => StepError::DriveBlocked { time, drive, row: name, residual },
-        None => StepError::NotSatisfied { time, row: name, residual },
-    }
+    (system.row_names.get(row).cloned().unwrap_or_default(), rows.C.get(row).copied().unwrap_or_default())
 }
 
 /// The error of a projection of velocities that left the rate of a row above `allowed`, |Ċ| over the scale of the row.

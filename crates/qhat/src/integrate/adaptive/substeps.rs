@@ -7,7 +7,7 @@ use crate::drift::{Drift, attainable, worst_row};
 use crate::energy;
 use crate::error::StepError;
 use crate::integrate::check_finite;
-use crate::integrate::failure::{at_an_edge, not_satisfied, without_length};
+use crate::integrate::failure::{at_an_edge, blocked, not_satisfied, without_length};
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
 use crate::multiplier::APPROACH;
@@ -265,7 +265,9 @@ impl<'a> Substeps<'a> {
             }
             // Sums of finite numbers may overflow; then no particle is to blame more than another.
             let first = || StepError::NotFinite { time, particle: system.first_moving() };
-            self.runaway(state, 0.0).unwrap_or_else(first)
+            // A drive that reaches the end of its linkage asks for more and more, and no force is large.
+            let blocked = || blocked(system, time, &rows);
+            self.runaway(state, 1.0).or_else(blocked).or_else(|| self.runaway(state, 0.0)).unwrap_or_else(first)
         })
     }
 
