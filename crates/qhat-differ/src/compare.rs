@@ -12,14 +12,14 @@ use qhat_scene::Format;
 // Each bound is relative, without a unit. In `qhat-differ seeds 0 2000` the largest difference was 0.29 of its bound,
 // without the two shapes of `generate/singular.rs`.
 
-/// The bound on positions at the start, of the extent: ten times the default tolerance of constraints, to which qhat may
-/// move the start.
+/// The bound on positions at the start, of the extent: ten times the default tolerance of constraints, to which qhat
+/// may move the start.
 const START_POSITIONS: f64 = 1e-9;
 /// The bound on velocities at the start, of the largest speed: that of positions times ten, because a position that is
 /// off by δ turns a rod of length r, and the velocity with it, by δ/r.
 const START_VELOCITIES: f64 = 1e-8;
-/// The bound on Q, of the largest force: both sides evaluate the same formulas, and stiff springs cancel up to five of
-/// sixteen digits.
+/// The bound on Q, of the largest force: both sides evaluate the same formulas, so they differ by roundoff, 1e-16,
+/// times the digits that cancel in the length of a stiff spring.
 const APPLIED: f64 = 1e-11;
 /// The bound on q̈ and Q̂ at the start where B = J M^(−1/2) has a condition of 1: a hundred times that on Q, because a
 /// solve of many rows adds up their errors.
@@ -29,18 +29,18 @@ const FORCES: f64 = 1e-9;
 const ROUNDOFF: f64 = 1e-14;
 /// The largest bound on q̈ and Q̂, whatever the condition: a wrong formula is off by more.
 const FORCES_MOST: f64 = 1e-2;
-/// The bound on positions and velocities after the motion for each unit of growth: qhat is asked for 1e-10 a substep, and
-/// takes thousands of substeps where a light particle swings on a stiff spring.
+/// The bound on positions and velocities after the motion for each unit of growth: qhat is asked for 1e-10 a substep,
+/// and takes thousands of substeps where a light particle swings on a stiff spring.
 const MOTION: f64 = 1e-6;
-/// The bound on T and V for each unit of that on positions: energies are of second degree, and a stiff spring multiplies
-/// a displacement.
+/// The bound on T and V for each unit of that on positions: energies are of second degree, and a stiff spring
+/// multiplies a displacement.
 const ENERGIES: f64 = 100.0;
-/// The bound on C after the motion, of the extent: ten times the default tolerance of qhat, which is measured by the scale
-/// of each row instead.
+/// The bound on C after the motion, of the extent: ten times the default tolerance of qhat, which is measured by the
+/// scale of each row instead.
 const RESIDUAL: f64 = 1e-9;
-/// The bound on C, q and q̇ where rods hold a joint to second order only. Three rods over a length L that are each off by
-/// the default tolerance, 1e-10 of their length, let the middle joint aside by w = √(δ L/2) = 1e-5 L, where δ = 2e-10 L;
-/// the rest is room for its velocity.
+/// The bound on C, q and q̇ where rods hold a joint to second order only. Three rods over a length L that are each off
+/// by the default tolerance, 1e-10 of their length, let the middle joint aside by w = √(δ L/2) = 1e-5 L, where δ =
+/// 2e-10 L; the rest is room for its velocity.
 const SECOND_ORDER: f64 = 3e-5;
 /// The perturbation of the velocities by which the growth of errors is measured: far above the errors of the reference,
 /// 1e-12, and small enough to grow in proportion.
@@ -137,6 +137,7 @@ pub fn compare(framework: &Framework, reader: Reader<'_>) -> Verdict {
         }
     };
     let (q, qd) = (framework.positions(), framework.velocities());
+    // A framework at rest or near the origin has no size of its own: a millimetre a second, a tenth of a metre.
     let extent = largest(&q).max(0.1);
     let speed = largest(&qd).max(1e-3);
     verdict.compare("positions at the start", simulation.state().positions(), &q, extent, START_POSITIONS);
@@ -222,8 +223,8 @@ fn motion(framework: &Framework, reference: &Reference, simulation: &mut Simulat
         verdict.compare(what, &[ours], &[theirs], size, ENERGIES * allowed);
     }
 
-    // Another integrator, whose constraints hold as well. Its bound on the motion is 1e4 times its tolerance, as that of
-    // dop853 is; a motion of order 1 or 2 is not compared.
+    // Another integrator, whose constraints hold as well. Its bound on the motion is 1e4 times its tolerance, as that
+    // of dop853 is. `implicit` and `bdf2` take fixed steps, so their motion is not compared.
     let (integrator, allowed) = *random.pick(&[
         (Integrator::Auto, 1e-4),
         (Integrator::Dopri5, 1e-4),

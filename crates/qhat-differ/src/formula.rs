@@ -7,7 +7,7 @@
 //! (f g)' = f'g + f g',   (f g)" = f"g + 2 f'g' + f g",   φ(f)' = φ'(f) f',   φ(f)" = φ'(f) f" + φ"(f) f'²
 //! ```
 //!
-//! Along (q̇, 1) the two derivatives of C are Ċ and γ; along one coordinate alone the first derivative is an entry of J.
+//! Along (q̇, 1) the two derivatives of C are Ċ and γ; along one coordinate the first derivative is an entry of J.
 
 use std::ops::{Add, Mul, Sub};
 

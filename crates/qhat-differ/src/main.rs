@@ -72,8 +72,8 @@ fn many(from: u64, count: u64) -> bool {
 
 /// Seeds for half of the minutes, hostile scenes for the other half; whether nothing was found.
 ///
-/// Both begin at a number that grows by a million a second, faster than any machine tries seeds or batches. So every run
-/// tries something new.
+/// Both begin at a number that grows by a million a second, faster than any machine tries seeds or batches. So every
+/// run tries something new.
 fn fuzz(minutes: u64) -> bool {
     let half = Duration::from_secs(30 * minutes);
     let first = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |time| time.as_micros() as u64);

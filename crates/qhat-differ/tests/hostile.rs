@@ -20,6 +20,6 @@ fn long_hostile_scenes_end_in_words_or_in_numbers() {
         }
     }
     assert!(found.is_empty(), "{} inputs with a fault:\n\n{}", found.len(), found.join("\n\n"));
-    // Scenes that all end in the reader would not try the engine, and scenes that are all valid would not try the reader.
+    // Scenes that all end in the reader would not try the engine, and valid scenes alone would not try the reader.
     assert!((INPUTS / 5..INPUTS * 4 / 5).contains(&valid), "{valid} of {INPUTS} inputs can be read");
 }

@@ -35,8 +35,8 @@ fn start(framework: &Framework) -> Moment {
     Moment { q: framework.positions(), qd: framework.velocities(), t: 0.0 }
 }
 
-/// A pendulum that lies level, with the velocity v along its arc: q̈ = (−v²/r, −g), Q̂ = (−m v²/r, 0). The bounds are some
-/// roundoffs of 10 and of 18.
+/// A pendulum that lies level, with the velocity v along its arc: q̈ = (−v²/r, −g), Q̂ = (−m v²/r, 0). The bounds are
+/// some roundoffs of 10 and of 18.
 #[test]
 fn pendulum_by_hand() {
     for squared in [false, true] {
@@ -53,7 +53,8 @@ fn pendulum_by_hand() {
 }
 
 /// A rod turns about the pivot at the rate v/r, whatever the number of steps; a spring of rest length 0 swings as a
-/// cosine of √(k/m) t. The bounds are some ten times the 1e-12 that each of the ten or so steps may be off.
+/// cosine of √(k/m) t. Each step may be off by 1e-12 of the extent or the speed, and the bounds leave room for the
+/// errors to add up: a factor of 10 for the rod, of 100 for the spring and its speed of 5 m/s.
 #[test]
 fn motions_of_closed_form() {
     let rod = Condition::Rod { between: [0, 1], length: number(1.0), squared: false };

@@ -32,7 +32,8 @@ const FAULTS: [Fault; 3] = [
         file: "crates/qhat/src/multiplier/rhs.rs",
         right: "self.bias[i] = -rows.gamma[i];",
         wrong: "self.bias[i] = if crate::planted(\"the sign of γ\") { rows.gamma[i] } else { -rows.gamma[i] };",
-        // Springs, and cranks through their flat position. The same rule of acceptance makes other seeds take minutes.
+        // Springs, and cranks through their flat position. Under most others the run takes longer than 20 s, because of
+        // the same rule of acceptance.
         seeds: &[10, 11],
     },
     Fault {
@@ -50,7 +51,7 @@ const FAULTS: [Fault; 3] = [
         file: "crates/qhat/src/expression/operation.rs",
         right: "Cosine => [-libm::sin(a), 0.0],",
         wrong: "Cosine => [if crate::planted(\"the slope of cos\") { libm::sin(a) } else { -libm::sin(a) }, 0.0],",
-        // A constraint, a potential and a force with a cosine: of the first 13 seeds none has one.
+        // A constraint and two potentials with a cosine.
         seeds: &[34, 43, 61],
     },
 ];
@@ -111,7 +112,7 @@ fn build(target: &Path) -> PathBuf {
     let (_, after) = rest.split_once(']').unwrap();
     let members = "\"crates/qhat\", \"crates/qhat-scene\", \"crates/qhat-differ\"";
     write(&copied.join("Cargo.toml"), format!("{before}members = [{members}]{after}").as_bytes());
-    // The versions of today. The text of the crate qhat includes README.md.
+    // The versions of today, and the file that the manifest of the crate qhat names.
     for file in ["Cargo.lock", "README.md"] {
         write(&copied.join(file), &fs::read(root().join(file)).unwrap());
     }
