@@ -105,7 +105,7 @@ bench: ## time, length error and energy error of qhat and other engines, into be
 	@echo "Running every workload"
 	@target/release/qhat-bench workloads
 	@benches/peers/run
-	@echo "Counting the instructions of six kernels"
+	@echo "Counting the instructions of seven kernels"
 	@target/release/qhat-bench kernels
 
 clean: ## remove everything that was built (npm packages and cached tools stay)

@@ -1,9 +1,9 @@
-//! Six kernels, small pieces of work whose instructions callgrind counts. Other programs on the machine hardly change
+//! Seven kernels, small pieces of work whose instructions callgrind counts. Other programs on the machine hardly change
 //! the count, so it shows a change of a few percent. A measured time does not.
 
 use crate::setting::Setting;
 use crate::workload::Workload;
-use qhat::{Integrator, Settings, Simulation, StepError, Workspace, evaluate, project};
+use qhat::{Integrator, Parameter, Quantity, Settings, Simulation, StepError, System, Workspace, evaluate, project};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -16,13 +16,14 @@ type Kernel = Box<dyn FnMut() -> Result<(), StepError>>;
 type SetUp = fn() -> Result<Kernel, Box<dyn Error>>;
 
 /// Each kernel: its name and the function that sets it up.
-const KERNELS: [(&str, SetUp); 6] = [
+const KERNELS: [(&str, SetUp); 7] = [
     ("chain100-dop853-frame", || frame("chain100", Integrator::Dop853)),
     ("chain100-rattle-frame", || frame("chain100", Integrator::Rattle)),
     ("net32-rattle-frame", || frame("net32", Integrator::Rattle)),
     ("truss20r-dop853-frame", || frame("truss20r", Integrator::Dop853)),
     ("net32-projection", projection),
     ("chain100-evaluate", terms),
+    ("chain100-bind", bind),
 ];
 
 /// One frame of 1 ms, after 0.1 s of motion. At the start all particles are at rest, and a step is cheaper than later.
@@ -58,6 +59,33 @@ fn terms() -> Result<Kernel, Box<dyn Error>> {
         black_box(evaluate(&system, &state));
         Ok(())
     }))
+}
+
+/// One bind of ten parameters: the lengths of five rods, the masses of four particles, gravity.
+fn bind() -> Result<Kernel, Box<dyn Error>> {
+    let (mut system, values) = bound_chain()?;
+    Ok(Box::new(move || Ok(system.bind(black_box(&values))?)))
+}
+
+/// A chain of 100 rods with ten parameters, and values of them.
+///
+/// # Errors
+/// None that a user can cause.
+pub fn bound_chain() -> Result<(System, Vec<f64>), Box<dyn Error>> {
+    let mut builder = "chain100".parse::<Workload>()?.builder();
+    let (plain, _) = builder.build()?;
+    let rod = |k: usize| Quantity::Constraint(plain.constraint_at(k).expect("a rod"), "length".into(), 0);
+    let particle = |k: usize| Quantity::Mass(plain.particle_at(k).expect("a particle"));
+    let gravity = Quantity::Force(plain.force_at(0).expect("gravity"), "acceleration".into(), 1);
+    let quantities = [10, 30, 50, 70, 90].map(rod).into_iter().chain([20, 40, 60, 80].map(particle)).chain([gravity]);
+    let mut values = Vec::new();
+    for (k, quantity) in quantities.enumerate() {
+        let value = *builder.number(&quantity).ok_or("no such number")?;
+        builder.parameter(Parameter::new(format!("a{k}"), value))?;
+        builder.depends(quantity, &format!("a{k}"))?;
+        values.push(1.01 * value);
+    }
+    Ok((builder.build()?.0, values))
 }
 
 /// The function whose instructions are counted: callgrind is told to collect inside it only.

@@ -1,6 +1,6 @@
 //! A workload in neutral form: the input that all engines share, without anything that belongs to one of them.
 
-use qhat::{BuildError, Dimension, Distance, Gravity, Particle, State, System};
+use qhat::{BuildError, Dimension, Distance, Gravity, Particle, State, System, SystemBuilder};
 use serde::Serialize;
 
 /// The gravity of all workloads, downwards in y \[m/s²\].
@@ -52,6 +52,11 @@ impl Workload {
     /// # Errors
     /// A matrix A that is too large for the engine.
     pub fn system(&self) -> Result<(System, State), BuildError> {
+        self.builder().build()
+    }
+
+    /// The parts of the system. The ids of particles and rods count in their order.
+    pub fn builder(&self) -> SystemBuilder {
         let mut builder = System::builder(if self.dimension == 2 { Dimension::Two } else { Dimension::Three });
         let ids: Vec<_> = (0..self.particle_count())
             .map(|i| {
@@ -66,7 +71,7 @@ impl Workload {
         let mut acceleration = [0.0; 3];
         acceleration[..self.dimension].copy_from_slice(&self.gravity);
         builder.force(Gravity { acceleration });
-        builder.build()
+        builder
     }
 
     /// The workload as the JSON file that the other engines read.

@@ -43,11 +43,29 @@ pub(crate) enum Command {
     },
 }
 
+/// Values of parameters.
+#[derive(Args, Debug)]
+pub(crate) struct Parameters {
+    /// Give a parameter of the scene another value; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) set: Vec<(String, f64)>,
+}
+
+/// A name and a value, as in a=0.2.
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("a parameter is set as in a=0.2")?;
+    let number = value.trim().parse().map_err(|_| format!("`{value}` is no number, as 0.2 and 1e-3 are"))?;
+    Ok((name.trim().to_owned(), number))
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct Run {
     /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
+
+    #[command(flatten)]
+    pub(crate) parameters: Parameters,
 
     /// Write the trajectory to this file, whose ending gives the format: .npz (NumPy) or .csv
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -100,6 +118,9 @@ pub(crate) struct Render {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
 
+    #[command(flatten)]
+    pub(crate) parameters: Parameters,
+
     /// Write the picture to this file, whose ending gives the format: .svg or .png
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
@@ -150,6 +171,9 @@ pub(crate) struct Check {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: String,
 
+    #[command(flatten)]
+    pub(crate) parameters: Parameters,
+
     /// Print the findings as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -160,6 +184,9 @@ pub(crate) struct Play {
     /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) parameters: Parameters,
 
     /// The port to listen on, on 127.0.0.1 only [default: 7407, or the next that is free]
     #[arg(long, value_name = "PORT")]

@@ -73,9 +73,9 @@ impl Source {
         path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
     }
 
-    /// The scene, or its errors.
-    pub(crate) fn load(&self) -> Result<Scene, SceneErrors> {
-        qhat_scene::load_bytes(&self.bytes, &self.name, self.format)
+    /// The scene with these values of its parameters, or its errors.
+    pub(crate) fn load(&self, parameters: &[(String, f64)]) -> Result<Scene, SceneErrors> {
+        qhat_scene::load_bytes_with(&self.bytes, &self.name, self.format, parameters)
     }
 
     /// A hash of the text, by which results can be matched with it.

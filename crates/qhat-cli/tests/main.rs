@@ -5,6 +5,7 @@ mod bench;
 mod check;
 mod common;
 mod events;
+mod parameters;
 mod play;
 mod reached;
 mod refuse;

@@ -47,6 +47,7 @@ mod check;
 mod error;
 mod load;
 mod model;
+mod parameters;
 mod report;
 mod scene;
 mod schema;
@@ -55,7 +56,7 @@ mod suggest;
 mod tree;
 
 pub use error::{SceneError, SceneErrors};
-pub use load::{Format, from_utf16, load, load_bytes};
+pub use load::{Format, from_utf16, load, load_bytes, load_bytes_with, load_with};
 pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub use report::fitted;
 pub use scene::Scene;

@@ -4,8 +4,9 @@ use crate::build::build;
 use crate::check::check;
 use crate::error::SceneErrors;
 use crate::model::Document;
+use crate::parameters::{self, Parameters};
 use crate::report::Report;
-use crate::scene::Scene;
+use crate::scene::{Scene, Source};
 use crate::schema::schema;
 use crate::tree::{json, toml};
 
@@ -35,10 +36,28 @@ impl Format {
 /// # Errors
 /// All mistakes that can be found in one pass.
 pub fn load(text: &str, source_name: &str, format: Format) -> Result<Scene, SceneErrors> {
+    load_with(text, source_name, format, &[])
+}
+
+/// Reads a scene with other values of some of its parameters.
+///
+/// # Errors
+/// As [`load`]; a name that no parameter has, a value that is not finite or out of the range of its parameter.
+pub fn load_with(
+    text: &str,
+    source_name: &str,
+    format: Format,
+    parameters: &[(String, f64)],
+) -> Result<Scene, SceneErrors> {
     let mut report = Report::new(source_name, text);
-    let scene = read(text, format, &mut report);
+    let scene = read(text, format, parameters, &mut report);
     match scene {
-        Some(scene) if report.is_empty() => Ok(*scene),
+        Some(mut scene) if report.is_empty() => {
+            if !scene.system.parameters().is_empty() {
+                scene.source = Some(Source::new(text, source_name, format));
+            }
+            Ok(*scene)
+        }
         _ => Err(report.into_errors()),
     }
 }
@@ -49,11 +68,24 @@ pub fn load(text: &str, source_name: &str, format: Format) -> Result<Scene, Scen
 /// # Errors
 /// The errors of [`load`], and bytes that are neither.
 pub fn load_bytes(bytes: &[u8], source_name: &str, format: Format) -> Result<Scene, SceneErrors> {
+    load_bytes_with(bytes, source_name, format, &[])
+}
+
+/// The same with other values of some of its parameters.
+///
+/// # Errors
+/// The errors of [`load_with`], and bytes that are neither.
+pub fn load_bytes_with(
+    bytes: &[u8],
+    source_name: &str,
+    format: Format,
+    parameters: &[(String, f64)],
+) -> Result<Scene, SceneErrors> {
     if let Some(text) = from_utf16(bytes) {
-        return load(&text, source_name, format);
+        return load_with(&text, source_name, format, parameters);
     }
     match std::str::from_utf8(bytes) {
-        Ok(text) => load(text, source_name, format),
+        Ok(text) => load_with(text, source_name, format, parameters),
         Err(error) => {
             // The report gets the text before the first such byte, because the rest has no certain reading.
             let valid = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
@@ -78,7 +110,7 @@ pub fn from_utf16(bytes: &[u8]) -> Option<String> {
     Some(char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
 }
 
-fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene>> {
+fn read(text: &str, format: Format, set: &[(String, f64)], report: &mut Report<'_>) -> Option<Box<Scene>> {
     if text.len() > MOST_BYTES {
         let message = format!("the scene has {} bytes; at most {MOST_BYTES} are read", text.len());
         report.error(0..0, message, Some("a `[[generate]]` block makes many particles from few lines".into()));
@@ -98,16 +130,17 @@ fn read(text: &str, format: Format, report: &mut Report<'_>) -> Option<Box<Scene
         report.error(start..start + 1, "this is XML (MJCF, URDF?), and no scene", Some(help));
         return None;
     }
-    let tree = match format {
+    let mut tree = match format {
         Format::Toml => toml::parse(content, report),
         Format::Json => json::parse(content, report),
     }?;
-    let checked = check(&tree, schema(), report)?;
+    parameters::set(&mut tree, set, report);
+    let checked = check(&tree, schema(), &Parameters::of(&tree), report)?;
     if checked.has_gaps {
         return None;
     }
     match serde_json::from_value::<Document>(checked.value) {
-        Ok(document) => build(document, &tree, report).map(Box::new),
+        Ok(document) => build(document, &tree, checked.uses, report).map(Box::new),
         Err(error) => {
             // The schema is made from the same types, so that this is not reached; if it were, it must not be silent.
             report.error(0..0, format!("the scene cannot be read: {error}"), None);

@@ -11,9 +11,42 @@ use std::sync::LazyLock;
 ///
 /// The reader checks scenes against this schema. Its own keyword `x-length` says that a list has one entry for each
 /// dimension. Conditions between keys (an id that must exist, a fixed particle that must not move) are not in the
-/// schema.
+/// schema. Where a number stands, the schema allows a text of parameters, whose value the reader checks.
 pub fn json_schema() -> Value {
-    schema().clone()
+    let mut schema = schema().clone();
+    if let Some(parts) = schema.as_object_mut() {
+        // Parameters themselves and the dimension are numbers.
+        for (key, part) in parts.iter_mut().filter(|(key, _)| key.as_str() != "$defs") {
+            if let (true, Value::Object(properties)) = (key == "properties", &mut *part) {
+                let others =
+                    properties.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "dimension" | "parameters"));
+                others.for_each(|(_, property)| allow_texts(property));
+            }
+        }
+        if let Some(Value::Object(definitions)) = parts.get_mut("$defs") {
+            let others =
+                definitions.iter_mut().filter(|(key, _)| !matches!(key.as_str(), "Parameter" | "ParameterTable"));
+            others.for_each(|(_, definition)| allow_texts(definition));
+        }
+    }
+    schema
+}
+
+/// Allows texts wherever numbers stand. The limits of a number do not apply to a text.
+fn allow_texts(schema: &mut Value) {
+    match schema {
+        Value::Object(keywords) => {
+            if let Some(Value::String(kind)) = keywords.get("type")
+                && matches!(kind.as_str(), "number" | "integer")
+            {
+                let kinds = vec![Value::from(kind.as_str()), Value::from("string")];
+                keywords.insert("type".into(), kinds.into());
+            }
+            keywords.iter_mut().filter(|(key, _)| key.as_str() != "default").for_each(|(_, it)| allow_texts(it));
+        }
+        Value::Array(list) => list.iter_mut().for_each(allow_texts),
+        _ => {}
+    }
 }
 
 pub(crate) fn schema() -> &'static Value {

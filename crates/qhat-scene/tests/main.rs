@@ -2,6 +2,7 @@
 //! compiled a second time, for a debug build. Names that begin with `long_` simulate for seconds of real time; `make
 //! check` leaves them to `make test`. The crate `qhat-schema-test` compares the schema with the reader.
 
+mod bind;
 mod broken;
 mod classic;
 mod encodings;

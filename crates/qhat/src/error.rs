@@ -1,6 +1,8 @@
 //! The reasons for which a step was not taken. Each error reads as a sentence with the names that a user gave.
 
+use crate::constraint::CurveEnd;
 use crate::settings::{Integrator, SettingsError};
+use crate::system::BindError;
 use crate::words::{Digits, Seconds};
 use thiserror::Error;
 
@@ -44,6 +46,9 @@ pub enum StepError {
         /// t of the last good state \[s\].
         time: f64,
     },
+    /// Parameters are not bound.
+    #[error(transparent)]
+    Parameters(#[from] BindError),
     /// The kinetic or potential energy is infinite or undefined: its numbers are beyond what can be computed with.
     #[error(
         "at t = {} s the {energy} energy of `{particle}` is not a finite number: a position, a velocity, a mass or a \
@@ -276,18 +281,6 @@ impl StepError {
     pub(crate) fn is_unmet(&self) -> bool {
         matches!(self, StepError::NotSatisfied { .. } | StepError::DriveBlocked { .. })
     }
-}
-
-/// An end of a curve that a bead cannot pass.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CurveEnd {
-    /// The first point of a spline or polyline that is not closed.
-    First,
-    /// The last point of a spline or polyline that is not closed.
-    Last,
-    /// A place beyond which the expressions of a path have no value.
-    Undefined,
 }
 
 fn rate_left(row: &str, rate: f64, drive: Option<&str>) -> String {

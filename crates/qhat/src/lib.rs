@@ -166,7 +166,7 @@ pub use constraint::*;
 pub use driven::Driven;
 pub use energy::Energy;
 pub use ensemble::{run_all, step_all};
-pub use error::{CurveEnd, StepError};
+pub use error::StepError;
 pub use expression::{Expression, ExpressionError, ParameterError, Purpose, Scope};
 pub use force::{
     Actuator, AirDrag, CentralForce, CubicSpring, CustomForce, CustomPotential, Drag, ExpressionForce,
@@ -186,6 +186,8 @@ pub use softness::SoftRow;
 pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};
 pub use structure::FlatClique;
-pub use system::{BuildError, Particle, ParticleError, System, SystemBuilder};
+pub use system::{
+    BindError, BuildError, Parameter, ParameterUse, Particle, ParticleError, Quantity, Refused, System, SystemBuilder,
+};
 pub use terms::{NOTATION, Notation, Terms, evaluate};
 pub use words::{Digits, Seconds};

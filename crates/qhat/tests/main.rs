@@ -8,6 +8,7 @@
 
 mod api;
 mod auto;
+mod bind;
 mod chains_against_general;
 mod columns;
 mod contacts;

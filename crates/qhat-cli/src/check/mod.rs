@@ -6,6 +6,7 @@
 //! ```
 
 mod components;
+mod parameters;
 
 use crate::arguments;
 use crate::failure::{Failure, NOT_REACHED};
@@ -22,7 +23,7 @@ use std::process::ExitCode;
 /// Checks a scene.
 pub(crate) fn check(arguments: &arguments::Check) -> Result<ExitCode, Failure> {
     let source = Source::read(&arguments.scene)?;
-    let scene = match source.load() {
+    let scene = match source.load(&arguments.parameters.set) {
         Ok(scene) => scene,
         Err(errors) => {
             if arguments.json {
@@ -57,6 +58,8 @@ struct Findings {
     particles: usize,
     free_particles: usize,
     rods: usize,
+    /// The parameters, with the numbers that depend on each.
+    parameters: Vec<parameters::Found>,
     rows: usize,
     rows_on_free_particles: usize,
     /// Rows on free particles that are inactive at the start, because their contacts are open.
@@ -167,6 +170,7 @@ impl Findings {
             particles: system.particle_count(),
             free_particles,
             rods: system.links().filter(|link| link.is_rod()).count(),
+            parameters: parameters::Found::all(system),
             rows: system.row_count(),
             rows_on_free_particles: rows + open_rows,
             open_rows,
@@ -222,6 +226,7 @@ impl Findings {
             }
             _ => {}
         }
+        lines.extend(self.parameters.iter().map(|parameter| ("parameter", parameter.in_words())));
         lines.extend(self.components.iter().take(LISTED).map(|components| ("component", components.in_words())));
         let others: usize = self.components.iter().skip(LISTED).map(|components| components.count).sum();
         if others > 0 {

@@ -19,7 +19,7 @@ pub(crate) fn play(arguments: &arguments::Play) -> Result<ExitCode, Failure> {
     let scene = arguments.scene.as_deref().map(Source::read).transpose()?;
     if let Some(scene) = &scene {
         // The page shows the errors, too, but the user who typed the command looks at the terminal.
-        scene.load().map_err(Failure::formatted)?;
+        scene.load(&arguments.parameters.set).map_err(Failure::formatted)?;
     }
     let listener = server::listen(arguments.port)?;
     let address = listener.local_addr().map_err(|error| Failure::io("cannot listen", &error))?;

@@ -37,7 +37,7 @@ pub(crate) fn render(arguments: &arguments::Render) -> Result<ExitCode, Failure>
     let format = Format::of(&arguments.output)?;
     let output = Output::new(&arguments.output, &[], arguments.force)?;
     let source = Source::read(&arguments.scene)?;
-    let scene = source.load().map_err(Failure::formatted)?;
+    let scene = source.load(&arguments.parameters.set).map_err(Failure::formatted)?;
     let still = match &arguments.from {
         Some(path) => Still::stored(&scene, &source, path, arguments.frame)?,
         None => Still::simulated(&scene, arguments.at.unwrap_or(0.0), arguments.quiet)?,

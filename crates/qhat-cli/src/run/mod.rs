@@ -26,7 +26,7 @@ use summary::{Summary, Tally};
 pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let began = Instant::now();
     let source = Source::read(&arguments.scene)?;
-    let scene = source.load().map_err(Failure::formatted)?;
+    let scene = source.load(&arguments.parameters.set).map_err(Failure::formatted)?;
     let settings = settings(arguments, scene.settings)?;
     // An integrator from the command line may find no events, which the reader of the scene could not know.
     qhat::check_start(&scene.system, &scene.state, &settings).map_err(Failure::input)?;

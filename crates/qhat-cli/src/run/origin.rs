@@ -9,6 +9,7 @@ use crate::status::Status;
 use qhat::{Feedback, Seconds, Settings, StepError};
 use qhat_scene::Scene;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The origin, written with every trajectory.
 #[derive(Clone, Debug, Serialize)]
@@ -33,6 +34,8 @@ pub(crate) struct Origin {
     /// t of the last good state \[s\].
     pub(crate) time_reached: f64,
     warnings: Vec<String>,
+    /// The value of each parameter of the scene.
+    parameters: BTreeMap<String, f64>,
 }
 
 /// The feedback that the integrator uses; zeros under an integrator that projects.
@@ -66,6 +69,7 @@ impl Origin {
             frames_asked: frames.count,
             time_reached: 0.0,
             warnings: Vec::new(),
+            parameters: scene.system.parameters().iter().map(|it| (it.name.clone(), it.value)).collect(),
         }
     }
 

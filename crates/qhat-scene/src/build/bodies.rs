@@ -1,6 +1,5 @@
 //! `[[bodies]]`: particles of bodies come after those of `[[generate]]`, their rods and midpoints after its links.
 
-use super::resolve::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::body::{Body, Common};
 use qhat::{Distance, Particle, ParticleId, Relation};
@@ -48,7 +47,7 @@ impl Assembly<'_, '_, '_> {
             let name = format!("{prefix}{i}");
             let (position, velocity) = (x[..self.dimension].to_vec(), v[..self.dimension].to_vec());
             self.positions.extend(&position);
-            self.inertias.push(Inertia { mass, fixed: false });
+            self.is_fixed.push(false);
             let added = self.builder.particle(Particle { name: name.clone(), position, velocity, mass, fixed: false });
             ids.push(added);
             if let Err(origin) = self.ids.take(&name, added, place.clone()) {

@@ -22,7 +22,9 @@ impl Assembly<'_, '_, '_> {
         for (index, constraint) in constraints.iter().enumerate() {
             let place = self.tree.key("constraints").item(index);
             self.adding = place.span.clone();
+            let before = self.builder.constraint_count();
             self.add_constraint(constraint, place);
+            self.made.constraints.push(before..self.builder.constraint_count());
         }
         self.adding = 0..0;
     }

@@ -56,7 +56,7 @@ impl Assembly<'_, '_, '_> {
         let schedule = match given {
             Some(driven) => self.schedule(driven, table.key(key))?,
             None => {
-                let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions);
+                let at_start = make(0.0.into()).residual(self.dimension_of_system(), self.start_positions());
                 let [measured] = at_start[..] else { unreachable!("a driven constraint has one row") };
                 if !measured.is_finite() {
                     let message = format!("`{key}` cannot be measured at the start");

@@ -1,11 +1,12 @@
 //! Constraints, forces and potentials written as expressions. Their errors point into the text of the scene.
 
 use super::Assembly;
+use super::uses::key_span;
 use crate::model::Parameters;
 use crate::model::expression::{self as model, Residual};
 use crate::report::Report;
 use crate::suggest::nearest;
-use crate::tree::{Node, Value};
+use crate::tree::Node;
 use qhat::expression::check_parameter;
 use qhat::{Expression, Purpose, Scope, State};
 use std::ops::Range;
@@ -42,7 +43,7 @@ impl Assembly<'_, '_, '_> {
         for (k, text) in texts.iter().enumerate() {
             let place = place.item(k);
             let expression = self.expression(text, Purpose::Constraint, &given.parameters, place)?;
-            let constraint = qhat::ExpressionConstraint::new(expression, &self.positions);
+            let constraint = qhat::ExpressionConstraint::new(expression, self.start_positions());
             let constraint = match given.scale {
                 Some(scale) => constraint.with_scale(scale),
                 None => constraint,
@@ -101,7 +102,7 @@ impl Assembly<'_, '_, '_> {
         parameters: &Parameters,
         place: &Node,
     ) -> Option<Expression> {
-        let (ids, scene) = (&self.ids, &self.parameters);
+        let (ids, scene, used, start) = (&self.ids, &self.parameters, &self.made.in_expressions, place.span.start);
         let suggest = |name: &str, own: &[&'static str]| {
             let names = parameters.keys().chain(scene.keys()).map(String::as_str).chain(own.iter().copied());
             nearest(name, names.chain(ids.alike(name))).map(str::to_owned)
@@ -110,7 +111,13 @@ impl Assembly<'_, '_, '_> {
             purpose,
             dimension: self.dimension_of_system(),
             particle: &|name| ids.find(name),
-            parameter: &|name| parameters.get(name).or_else(|| scene.get(name)).copied(),
+            parameter: &|name| {
+                parameters.get(name).copied().or_else(|| {
+                    let value = scene.get(name).copied()?;
+                    used.borrow_mut().insert((name.to_owned(), start));
+                    Some(value)
+                })
+            },
             suggest: &suggest,
         };
         let error = match Expression::parse(text, &scope) {
@@ -127,18 +134,6 @@ impl Assembly<'_, '_, '_> {
         };
         self.report.error(span, self.report.fitted(&error.message), help);
         None
-    }
-
-    /// Takes the parameters of the whole scene; reports those that cannot be parameters.
-    pub(super) fn take_parameters(&mut self, parameters: &Parameters) {
-        let table = self.tree.key("parameters");
-        for (name, &value) in parameters {
-            let is_along_a_curve = || (name == "s").then(along_a_curve);
-            match self.wrong_parameter(name, value).or_else(is_along_a_curve) {
-                Some(wrong) => self.refuse_parameter(table, name, wrong),
-                None => drop(self.parameters.insert(name.clone(), value)),
-            }
-        }
     }
 
     /// `None` after reporting a parameter beside an expression that cannot be one.
@@ -159,7 +154,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// The reason why this cannot be a parameter, and the help.
-    fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
+    pub(super) fn wrong_parameter(&self, name: &str, value: f64) -> Option<(String, Option<String>)> {
         match check_parameter(name, value) {
             Err(reason) => Some((reason.to_string(), None)),
             Ok(()) => self.ids.find(name).map(|_| {
@@ -169,20 +164,11 @@ impl Assembly<'_, '_, '_> {
         }
     }
 
-    fn refuse_parameter(&mut self, table: &Node, name: &str, (message, help): (String, Option<String>)) {
+    pub(super) fn refuse_parameter(&mut self, table: &Node, name: &str, (message, help): (String, Option<String>)) {
         self.report.error(key_span(table, name), self.report.fitted(&message), help);
     }
 }
 
-fn along_a_curve() -> (String, Option<String>) {
+pub(super) fn along_a_curve() -> (String, Option<String>) {
     ("`s` already has a meaning in curves: give the parameter another name".to_owned(), None)
-}
-
-/// The place of a key of a table; the place of the table where the key is missing.
-fn key_span(table: &Node, key: &str) -> Range<usize> {
-    match &table.value {
-        Value::Table(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| entry.key_span.clone()),
-        _ => None,
-    }
-    .unwrap_or_else(|| table.span.clone())
 }

@@ -9,7 +9,7 @@ use qhat::{CentralForce, InverseSquare};
 impl Assembly<'_, '_, '_> {
     pub(super) fn add_central_gravity(&mut self, it: &CentralGravity, place: &Node) -> Option<()> {
         for particle in self.listed_or_free(it.particles.as_deref(), place)? {
-            let (center, mass) = (it.center.padded(), self.inertias[particle.index()].mass);
+            let (center, mass) = (it.center.padded(), self.weighed(particle));
             self.builder.force(CentralForce::gravity(particle, mass, center, it.mu, it.softening));
         }
         Some(())
@@ -19,7 +19,7 @@ impl Assembly<'_, '_, '_> {
         let particles = self.different(&it.particles, place.key("particles"))?;
         for (i, &b) in particles.iter().enumerate() {
             for &a in &particles[..i] {
-                let pair = [self.inertias[a.index()].mass, self.inertias[b.index()].mass];
+                let pair = [self.weighed(a), self.weighed(b)];
                 self.builder.force(InverseSquare::gravity([a, b], pair, it.constant, it.softening));
             }
         }

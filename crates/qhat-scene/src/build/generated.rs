@@ -1,6 +1,5 @@
 //! `[[generate]]`: particles of blocks come after those of `[[particles]]`, their links after `[[constraints]]`.
 
-use super::resolve::Inertia;
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::Generate;
 use crate::model::generate::{Common, Link, Plan, RodLink, SpringLink};
@@ -53,7 +52,7 @@ impl Assembly<'_, '_, '_> {
                 return None;
             }
             self.positions.extend(&at);
-            self.inertias.push(Inertia { mass, fixed });
+            self.is_fixed.push(fixed);
             let velocity = velocity.map_or_else(|| vec![0.0; self.dimension], |velocity| velocity.0.clone());
             let added = self.builder.particle(Particle { name: name.clone(), position: at, velocity, mass, fixed });
             if let Err(origin) = self.ids.take(&name, added, place.clone()) {

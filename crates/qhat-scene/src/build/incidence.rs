@@ -39,7 +39,7 @@ impl Assembly<'_, '_, '_> {
 
     pub(super) fn add_center_of_mass(&mut self, it: &CenterOfMass, place: &Node) -> Option<()> {
         let particles = self.particles(&it.particles, place.key("particles"))?;
-        let terms: Vec<_> = particles.into_iter().map(|id| (id, self.builder.mass(id))).collect();
+        let terms: Vec<_> = particles.into_iter().map(|id| (id, self.weighed(id))).collect();
         let terms = qhat::Relation::center_of_mass(terms, [0.0; 3].map(qhat::Driven::Constant)).terms;
         self.add_relation_of(it, terms, it.at.as_ref(), place)
     }

@@ -24,7 +24,9 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_loads(&mut self, loads: &[Load]) {
         for (index, load) in loads.iter().enumerate() {
             let place = self.tree.key("loads").item(index);
+            let before = self.builder.force_count();
             self.add_load(load, place);
+            self.made.loads.push(before..self.builder.force_count());
         }
     }
 

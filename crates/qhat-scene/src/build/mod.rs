@@ -21,18 +21,20 @@ mod pressure;
 mod resolve;
 mod rods;
 mod springs;
+mod uses;
 mod wheels;
 
 use crate::model::{Document, Parameters, Step};
+use crate::parameters::Use;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::tree::Node;
 use expressions::Untried;
 use ids::Ids;
 use qhat::{BuildError, Dimension, Drag, Feedback, Gravity, Settings, System, SystemBuilder};
-use resolve::Inertia;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
+use uses::Made;
 
 /// The most particles of a scene. More would fill the memory of a browser before the first frame.
 const MOST_PARTICLES: u64 = 1_000_000;
@@ -48,8 +50,8 @@ struct Assembly<'a, 'r, 't> {
     dimension: usize,
     /// x of all particles at the start [m], flat, for lengths that are left out.
     positions: Vec<f64>,
-    /// The inertia of each particle, for loads that depend on it.
-    inertias: Vec<Inertia>,
+    /// Whether each particle is fixed.
+    is_fixed: Vec<bool>,
     ids: Ids,
     /// The numbers that every expression of the scene may refer to.
     parameters: Parameters,
@@ -61,10 +63,11 @@ struct Assembly<'a, 'r, 't> {
     places: Places,
     /// The place in the text of the constraint that is being added.
     adding: Range<usize>,
+    made: Made,
 }
 
 /// The scene, or `None` after reporting every error.
-pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) -> Option<Scene> {
+pub(crate) fn build(document: Document, tree: &Node, uses: Vec<Use>, report: &mut Report<'_>) -> Option<Scene> {
     let (number, dimension) = if document.dimension == 2 { (2, Dimension::Two) } else { (3, Dimension::Three) };
     let mut assembly = Assembly {
         tree,
@@ -72,7 +75,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         builder: System::builder(dimension),
         dimension: number,
         positions: Vec::new(),
-        inertias: Vec::new(),
+        is_fixed: Vec::new(),
         ids: Ids::default(),
         parameters: Parameters::new(),
         constraint_names: HashSet::new(),
@@ -80,8 +83,10 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         untried: Vec::new(),
         places: Places::new(),
         adding: 0..0,
+        made: Made::default(),
     };
     assembly.add_all(&document)?;
+    assembly.declare(uses);
     let Assembly { builder, report, ids, untried, places, .. } = assembly;
     let (system, state) = match builder.build() {
         Ok(built) => built,
@@ -104,7 +109,7 @@ pub(crate) fn build(document: Document, tree: &Node, report: &mut Report<'_>) ->
         return None;
     }
     let Document { name, description, expect, step, .. } = document;
-    Some(Scene { name, description, system, state, settings, duration: step.duration, expect })
+    Some(Scene { name, description, system, state, settings, duration: step.duration, expect, source: None })
 }
 
 fn settings(step: &Step) -> Settings {
@@ -139,10 +144,10 @@ impl Assembly<'_, '_, '_> {
         self.add_springs(&document.springs);
         self.add_loads(&document.loads);
         if let Some(gravity) = &document.forces.gravity {
-            self.builder.force(Gravity { acceleration: gravity.padded() });
+            self.made.gravity = Some(self.builder.force(Gravity { acceleration: gravity.padded() }));
         }
         if document.forces.drag > 0.0 {
-            self.builder.force(Drag { coefficient: document.forces.drag });
+            self.made.drag = Some(self.builder.force(Drag { coefficient: document.forces.drag }));
         }
         let crate::model::Feedback { ks, kd, diagonal_drag, elasticity } = document.feedback;
         self.builder.feedback(Feedback { ks, kd, diagonal_drag, elasticity });

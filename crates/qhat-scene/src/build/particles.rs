@@ -1,7 +1,6 @@
 //! `[[particles]]`.
 
 use super::Assembly;
-use super::resolve::Inertia;
 use crate::model::Particle;
 
 impl Assembly<'_, '_, '_> {
@@ -24,7 +23,7 @@ impl Assembly<'_, '_, '_> {
                 fixed: particle.fixed,
             });
             self.positions.extend(&particle.at.0);
-            self.inertias.push(Inertia { mass: particle.mass, fixed: particle.fixed });
+            self.is_fixed.push(particle.fixed);
             let span = place.key("id").span.clone();
             if let Err(first) = self.ids.take(id, added, span.clone()) {
                 let message = format!("the id {} is given twice", self.report.quoted(id));

@@ -15,7 +15,7 @@ impl Assembly<'_, '_, '_> {
             }
             return Some(());
         };
-        let gas = Gas::new(facets, it.pressure, exponent, self.dimension_of_system(), &self.positions);
+        let gas = Gas::new(facets, it.pressure, exponent, self.dimension_of_system(), self.start_positions());
         if let Err(reason) = gas.check() {
             let help = "leave out `exponent` for a constant pressure".to_owned();
             self.report.error(place.span.clone(), reason.to_string(), Some(help));
@@ -34,7 +34,8 @@ impl Assembly<'_, '_, '_> {
             return None;
         }
         let mut outline = self.different(&it.outline, place.key("outline"))?;
-        let x = |id: ParticleId| [self.positions[id.index() * 2], self.positions[id.index() * 2 + 1]];
+        let q = self.start_positions();
+        let x = |id: ParticleId| [q[id.index() * 2], q[id.index() * 2 + 1]];
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
         let twice_area: f64 = ends.map(|(&a, &b)| x(a)[0] * x(b)[1] - x(a)[1] * x(b)[0]).sum();
         if twice_area < 0.0 {

@@ -6,13 +6,6 @@ use crate::tree::Node;
 use qhat::ParticleId;
 use std::collections::HashSet;
 
-/// The mass of a particle, and whether it is fixed: the numbers that loads need.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Inertia {
-    pub(super) mass: f64,
-    pub(super) fixed: bool,
-}
-
 impl Assembly<'_, '_, '_> {
     /// The particle with this id.
     pub(super) fn particle(&mut self, Id(id): &Id, place: &Node) -> Option<ParticleId> {
@@ -75,7 +68,7 @@ impl Assembly<'_, '_, '_> {
         match ids {
             Some(ids) => self.different(ids, place.key("particles")),
             None => {
-                let free = (0..self.inertias.len()).filter(|&i| !self.inertias[i].fixed);
+                let free = (0..self.is_fixed.len()).filter(|&i| !self.is_fixed[i]);
                 free.map(|i| self.builder.particle_at(i)).collect()
             }
         }
@@ -83,14 +76,15 @@ impl Assembly<'_, '_, '_> {
 
     /// The position of a particle at the start [m], with three components as the engine takes points.
     pub(super) fn start(&self, particle: ParticleId) -> [f64; 3] {
-        let start = &self.positions[particle.index() * self.dimension..][..self.dimension];
+        let start = &self.start_positions()[particle.index() * self.dimension..][..self.dimension];
         std::array::from_fn(|k| start.get(k).copied().unwrap_or(0.0))
     }
 
     /// The distance of two particles at the start [m].
     pub(super) fn distance(&self, a: ParticleId, b: ParticleId) -> f64 {
         let (d, a, b) = (self.dimension, a.index(), b.index());
-        let squares = (0..d).map(|k| self.positions[a * d + k] - self.positions[b * d + k]).map(|x| x * x);
+        let q = self.start_positions();
+        let squares = (0..d).map(|k| q[a * d + k] - q[b * d + k]).map(|x| x * x);
         squares.sum::<f64>().sqrt()
     }
 }

@@ -11,11 +11,18 @@ impl Assembly<'_, '_, '_> {
     pub(super) fn add_springs(&mut self, springs: &[Spring]) {
         for (index, it) in springs.iter().enumerate() {
             let place = self.tree.key("springs").item(index);
-            let Some((a, b)) = self.pair(&it.between, place.key("between")) else { continue };
-            let Some(rest) = self.rest(it.rest, (a, b), place) else { continue };
-            let Spring { stiffness, damping, .. } = *it;
-            self.builder.force(qhat::Spring { a, b, stiffness, damping, rest });
+            let before = self.builder.force_count();
+            self.add_spring(it, place);
+            self.made.springs.push(before..self.builder.force_count());
         }
+    }
+
+    fn add_spring(&mut self, it: &Spring, place: &Node) -> Option<()> {
+        let (a, b) = self.pair(&it.between, place.key("between"))?;
+        let rest = self.rest(it.rest, (a, b), place)?;
+        let Spring { stiffness, damping, .. } = *it;
+        self.builder.force(qhat::Spring { a, b, stiffness, damping, rest });
+        Some(())
     }
 
     pub(super) fn add_cubic_spring(&mut self, it: &CubicSpring, place: &Node) -> Option<()> {
@@ -61,9 +68,9 @@ impl Assembly<'_, '_, '_> {
 
     /// The angle at the start from the arm b–a to the arm b–c [rad].
     fn hinge_angle(&self, a: ParticleId, b: ParticleId, c: ParticleId) -> Option<f64> {
-        let d = self.dimension;
+        let (d, q) = (self.dimension, self.start_positions());
         let arm = |end: ParticleId| -> [f64; 3] {
-            let of = |k: usize| self.positions[end.index() * d + k] - self.positions[b.index() * d + k];
+            let of = |k: usize| q[end.index() * d + k] - q[b.index() * d + k];
             std::array::from_fn(|k| if k < d { of(k) } else { 0.0 })
         };
         let dot = |u: [f64; 3], w: [f64; 3]| u[0] * w[0] + u[1] * w[1] + u[2] * w[2];

@@ -30,7 +30,7 @@ impl Assembly<'_, '_, '_> {
                 None => qhat::Angle::from_direction(direction, arm, angle).into(),
             }
         };
-        let at_start = make(0.0.into()).residual(self.dimension_of_system(), &self.positions)[0];
+        let at_start = make(0.0.into()).residual(self.dimension_of_system(), self.start_positions())[0];
         if self.dimension == 3 && (at_start.abs() < IN_LINE || (PI - at_start.abs()).abs() < IN_LINE) {
             let message = "at the start the arm lies in one line with the arm or direction from which its angle is \
                            counted; in space such an angle has no direction to change in";

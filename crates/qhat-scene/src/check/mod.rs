@@ -7,6 +7,7 @@ mod schema_node;
 mod table;
 mod text;
 
+use crate::parameters::{Parameters, Use};
 use crate::report::Report;
 use crate::tree::{Node, Value};
 use schema_node::SchemaNode;
@@ -18,25 +19,34 @@ pub(crate) struct Checked {
     pub(crate) value: Json,
     /// Whether a table or list is left out. Errors about references to it would mislead.
     pub(crate) has_gaps: bool,
+    /// The numbers that texts of parameters give.
+    pub(crate) uses: Vec<Use>,
 }
 
 /// Checks a tree against the schema; `None` when a required key of the scene is missing or wrong.
-pub(crate) fn check(tree: &Node, schema: &Json, report: &mut Report<'_>) -> Option<Checked> {
+pub(crate) fn check(
+    tree: &Node,
+    schema: &Json,
+    parameters: &Parameters<'_>,
+    report: &mut Report<'_>,
+) -> Option<Checked> {
     let dimension = match tree.get("dimension").map(|node| &node.value) {
         Some(Value::Number(number)) if *number == 2.0 => Some(2),
         Some(Value::Number(number)) if *number == 3.0 => Some(3),
         _ => None,
     };
-    let mut checker = Checker { root: schema, dimension, report, has_gaps: false };
+    let mut checker = Checker { root: schema, dimension, parameters, report, has_gaps: false, uses: Vec::new() };
     let value = checker.value(tree, SchemaNode::of(schema, schema), "the scene")?;
-    Some(Checked { value, has_gaps: checker.has_gaps })
+    Some(Checked { value, has_gaps: checker.has_gaps, uses: checker.uses })
 }
 
 struct Checker<'a, 'r, 't> {
     root: &'a Json,
     dimension: Option<usize>,
+    parameters: &'r Parameters<'r>,
     report: &'r mut Report<'t>,
     has_gaps: bool,
+    uses: Vec<Use>,
 }
 
 impl<'a> Checker<'a, '_, '_> {
@@ -48,13 +58,19 @@ impl<'a> Checker<'a, '_, '_> {
         if let Some(choices) = schema.choices() {
             return self.choice(node, name, &choices);
         }
-        if let Some(alternative) = schema.alternatives().find(|alternative| agrees(alternative.text("type"), node)) {
+        if let Some(alternative) =
+            schema.alternatives(self.root).find(|alternative| agrees(alternative.text("type"), node))
+        {
             return self.value(node, alternative, name);
         }
         if schema.is_number_or_text() {
             return match &node.value {
                 Value::Number(number) => self.number(node, *number, schema, name),
-                Value::Text(text) => self.text(node, text, schema, name),
+                // A text that names nothing but parameters is a number.
+                Value::Text(text) => match self.parameters.expression(text) {
+                    Ok(expression) if !expression.is_constant() => self.value_of(node, expression, schema, name),
+                    _ => self.text(node, text, schema, name),
+                },
                 _ => self.mismatch(node, schema, name),
             };
         }
@@ -64,6 +80,7 @@ impl<'a> Checker<'a, '_, '_> {
             ("array", Value::List(items)) => self.list(node, items, schema, name),
             ("string", Value::Text(text)) => self.text(node, text, schema, name),
             ("number" | "integer", Value::Number(number)) => self.number(node, *number, schema, name),
+            ("number" | "integer", Value::Text(text)) => self.computed(node, text, schema, name),
             ("boolean", Value::Truth(truth)) => Some(Json::Bool(*truth)),
             _ => self.mismatch(node, schema, name),
         }
@@ -147,7 +164,13 @@ impl<'a> Checker<'a, '_, '_> {
 
 /// Whether a value is of a type of the schema.
 fn agrees(kind: &str, node: &Node) -> bool {
-    matches!((kind, &node.value), ("string", Value::Text(_)) | ("array", Value::List(_)))
+    matches!(
+        (kind, &node.value),
+        ("string", Value::Text(_))
+            | ("array", Value::List(_))
+            | ("number", Value::Number(_))
+            | ("object", Value::Table(_))
+    )
 }
 
 /// A key in backticks; a phrase unchanged.

@@ -1,12 +1,73 @@
 //! Numbers: finite, whole where the schema asks for a whole number, in range.
 
 use super::{Checker, SchemaNode};
+use crate::parameters::Use;
 use crate::tree::Node;
+use qhat::Expression;
 use serde_json::Value as Json;
 
 impl<'a> Checker<'a, '_, '_> {
     pub(super) fn number(&mut self, node: &Node, number: f64, schema: SchemaNode<'a>, name: &str) -> Option<Json> {
         let written = self.report.written(&node.span);
+        self.in_range(node, number, written, schema, name)
+    }
+
+    /// A number that a text of parameters gives.
+    pub(super) fn computed(&mut self, node: &Node, text: &str, schema: SchemaNode<'a>, name: &str) -> Option<Json> {
+        // Parameters of parameters could go in circles, and vectors are checked with the dimension as it is written.
+        if self.parameters.has(&node.span) || name == "dimension" {
+            return self.mismatch(node, schema, name);
+        }
+        if text.trim().parse::<f64>().is_ok() {
+            let message = format!("`{name}` is a text, {}, but must be a number", self.report.written(&node.span));
+            self.report.error(node.span.clone(), message, Some("write the number without quotation marks".into()));
+            return None;
+        }
+        match self.parameters.expression(text) {
+            Ok(expression) => self.value_of(node, expression, schema, name),
+            Err(_) if has_unit(text) => self.mismatch(node, schema, name),
+            Err(error) => {
+                let kind = schema.type_in_words();
+                let message = format!(
+                    "{} must be {kind} or an expression of parameters, but is the text {}: {}",
+                    super::called(name),
+                    self.report.quoted(text),
+                    self.report.fitted(&error.message)
+                );
+                let help = error.help.map(|help| self.report.fitted(&help));
+                let help = help.or_else(|| (!name.contains(' ')).then(|| self.help(schema, name)));
+                self.report.error(self.report.piece(&node.span, text, &error.span), message, help);
+                None
+            }
+        }
+    }
+
+    /// The value of an expression of parameters, whose use is noted.
+    pub(super) fn value_of(
+        &mut self,
+        node: &Node,
+        expression: Expression,
+        schema: SchemaNode<'a>,
+        name: &str,
+    ) -> Option<Json> {
+        let number = self.parameters.value(&expression);
+        let written = format!("{number:?}, the value of `{}`", self.report.fitted(expression.text()));
+        let checked = self.in_range(node, number, written, schema, name)?;
+        if !expression.is_constant() {
+            self.uses.push(Use { expression, place: node.span.clone() });
+        }
+        Some(checked)
+    }
+
+    /// A number as JSON, if it is finite, whole where it must be, and in range. Messages say that it is `written`.
+    fn in_range(
+        &mut self,
+        node: &Node,
+        number: f64,
+        written: String,
+        schema: SchemaNode<'a>,
+        name: &str,
+    ) -> Option<Json> {
         let complaint = if number.is_nan() || written.trim_start_matches(['+', '-']) == "inf" {
             format!("`{name}` must be a finite number, but is {written}")
         } else if number.is_infinite() {
@@ -29,6 +90,14 @@ impl<'a> Checker<'a, '_, '_> {
         self.report.error(node.span.clone(), complaint, Some(help));
         None
     }
+}
+
+/// Whether a text is a number with a unit, such as `1 kg`.
+fn has_unit(text: &str) -> bool {
+    let text = text.trim();
+    let (number, unit) =
+        text.split_at(text.find(|letter: char| !"+-.0123456789 ".contains(letter)).unwrap_or(text.len()));
+    number.trim().parse::<f64>().is_ok() && !unit.contains(['(', '+', '-'])
 }
 
 /// The allowed range in words, where a number is outside of it.

@@ -31,9 +31,9 @@ impl<'a> SchemaNode<'a> {
     }
 
     /// The schemas of the allowed types, where there are several.
-    pub(super) fn alternatives(&self) -> impl Iterator<Item = Self> + use<'a> {
+    pub(super) fn alternatives(&self, root: &'a Json) -> impl Iterator<Item = Self> + use<'a> {
         let words = self.node;
-        self.list("anyOf").map(move |node| SchemaNode { node, target: None, list: Some(words) })
+        self.list("anyOf").map(move |node| SchemaNode { list: Some(words), ..SchemaNode::of(root, node) })
     }
 
     /// Whether this is the node at this place of the schema.
@@ -106,7 +106,10 @@ impl<'a> SchemaNode<'a> {
             "boolean" => "true or false",
             _ if self.is_tagged() => "a table",
             _ if self.is_number_or_text() => "a number or an expression of t",
-            _ if self.alternatives().next().is_some() => "text or a list of texts",
+            _ if self.list("anyOf").any(|node| node.get("type").and_then(Json::as_str) == Some("number")) => {
+                "a number or a table"
+            }
+            _ if self.list("anyOf").next().is_some() => "text or a list of texts",
             _ => "text",
         }
     }

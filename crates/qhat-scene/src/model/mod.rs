@@ -17,6 +17,7 @@ mod integrator;
 pub(crate) mod lengths;
 pub(crate) mod lines;
 pub(crate) mod load;
+mod parameter;
 pub(crate) mod point;
 pub(crate) mod pressure;
 pub(crate) mod rods;
@@ -31,12 +32,14 @@ pub use expect::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub(crate) use expression::Parameters;
 pub(crate) use generate::Generate;
 pub(crate) use load::Load;
+pub(crate) use parameter::Parameter;
 pub(crate) use springs::Spring;
 pub(crate) use step::{Feedback, Forces, Step};
 pub(crate) use value::{Id, Name, PATTERNS, Vector};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A scene of qhat: particles, constraints, forces, and the settings of a run. SI units.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq, Serialize)]
@@ -55,9 +58,10 @@ pub(crate) struct Document {
     /// The number of space dimensions, 2 or 3.
     #[schemars(range(min = 2, max = 3))]
     pub(crate) dimension: u8,
-    /// A table of numbers that every expression of the scene may refer to by name.
+    /// A table of numbers that expressions refer to by name. Wherever a number of the scene stands, a text of parameters
+    /// may stand, such as `"2*a"`.
     #[serde(default)]
-    pub(crate) parameters: Parameters,
+    pub(crate) parameters: BTreeMap<String, Parameter>,
     /// The table of the settings of a run.
     #[serde(default)]
     pub(crate) step: Step,

@@ -33,13 +33,30 @@ pub(crate) struct Entry {
     pub(crate) node: Node,
 }
 
+/// One step on the way from the top of a tree to a value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Step<'a> {
+    /// A key of a table.
+    Key(&'a str),
+    /// A place in a list, from 0.
+    Place(usize),
+}
+
 impl Node {
+    /// The entries of a table; none where the value is no table.
+    pub(crate) fn entries(&self) -> &[Entry] {
+        if let Value::Table(entries) = &self.value { entries } else { &[] }
+    }
+
     /// The value under a key of a table.
     pub(crate) fn get(&self, key: &str) -> Option<&Node> {
-        match &self.value {
-            Value::Table(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node),
-            _ => None,
-        }
+        self.entries().iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    /// The value under a key of a table, to be changed.
+    pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        let Value::Table(entries) = &mut self.value else { return None };
+        entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
     }
 
     /// The value under a key, or the table where the key is left out: the place for an error about the key.

@@ -33,7 +33,7 @@ pub struct Angle {
     arms: Arms,
     /// The direction u that the angle counts from; zero if it counts from an arm.
     direction: [f64; 3],
-    angle: Driven,
+    pub(crate) angle: Driven,
 }
 
 impl Angle {

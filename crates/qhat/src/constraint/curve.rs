@@ -21,7 +21,6 @@
 use super::polyline::Polyline;
 use super::spline::Spline;
 use crate::allowed::GeometryError;
-use crate::error::CurveEnd;
 use crate::expression::Expression;
 use crate::number::Number;
 use crate::point::{Point, dot, minus};
@@ -44,6 +43,18 @@ const PAST: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     shape: Arc<Shape>,
+}
+
+/// An end of a curve that a bead cannot pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CurveEnd {
+    /// The first point of a spline or polyline that is not closed.
+    First,
+    /// The last point of a spline or polyline that is not closed.
+    Last,
+    /// A place beyond which the expressions of a path have no value.
+    Undefined,
 }
 
 #[derive(Debug, PartialEq)]

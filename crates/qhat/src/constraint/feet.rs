@@ -7,9 +7,9 @@
 //! s is part of the State, and a substep that is kept moves it on. So the rows are a function of q, t and the State,
 //! and a restart gives the same bits.
 
+use super::curve::CurveEnd;
 use super::on_curve::Followed;
 use super::{Constraint, OnCurve};
-use crate::error::CurveEnd;
 use crate::point::Motion;
 
 /// The feet of all beads at the start of the substep, in the order of the constraints.

@@ -50,7 +50,7 @@ enum Part {
 pub struct Gears {
     arms: Arms,
     parts: Vec<Part>,
-    angle: Driven,
+    pub(crate) angle: Driven,
 }
 
 impl Gears {

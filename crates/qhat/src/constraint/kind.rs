@@ -61,9 +61,9 @@ pub(crate) trait Holds {
         0.0
     }
 
-    /// The rows that open and close.
-    fn contacts(&self, _dimension: usize) -> Vec<ContactRows> {
-        Vec::new()
+    /// The rows that open and close, at most two.
+    fn contacts(&self, _dimension: usize) -> [Option<ContactRows>; 2] {
+        [None, None]
     }
 
     /// The tension or thrust of the first row at which the constraint breaks [N].

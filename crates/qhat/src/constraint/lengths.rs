@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 pub struct Lengths {
     segments: Arms,
     weights: Vec<f64>,
-    total: Driven,
+    pub(crate) total: Driven,
 }
 
 impl Lengths {

@@ -150,10 +150,11 @@ impl Holds for Limits {
         self.rows().nth(row).map_or(0.0, |(_, limit)| limit / self.stiffness)
     }
 
-    fn contacts(&self, _: usize) -> Vec<ContactRows> {
-        let rows = 0..self.rows().count();
-        rows.map(|row| ContactRows { normal: row, tangents: 0..0, restitution: self.restitution, friction: 0.0 })
-            .collect()
+    fn contacts(&self, _: usize) -> [Option<ContactRows>; 2] {
+        let count = self.rows().count();
+        let restitution = self.restitution;
+        let contact = |row: usize| ContactRows { normal: row, tangents: 0..0, restitution, friction: 0.0 };
+        [0, 1].map(|row| (row < count).then(|| contact(row)))
     }
 
     fn breaks_at(&self) -> Option<f64> {

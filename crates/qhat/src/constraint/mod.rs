@@ -42,7 +42,7 @@ mod volume;
 pub use anchor::{Anchor, DrivenPoint};
 pub use angle::Angle;
 pub use area::Area;
-pub use curve::Curve;
+pub use curve::{Curve, CurveEnd};
 pub use custom::{Custom, CustomConstraint};
 pub use direction::Direction;
 pub use distance::{Distance, DistanceForm};
@@ -136,7 +136,7 @@ macro_rules! constraints {
             fn flexibility(&self, row: usize, t: f64) -> f64 {
                 match self { $(Constraint::$kind(constraint) => constraint.flexibility(row, t),)* }
             }
-            fn contacts(&self, dimension: usize) -> Vec<ContactRows> {
+            fn contacts(&self, dimension: usize) -> [Option<ContactRows>; 2] {
                 match self { $(Constraint::$kind(constraint) => constraint.contacts(dimension),)* }
             }
             fn breaks_at(&self) -> Option<f64> {

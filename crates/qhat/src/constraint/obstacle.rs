@@ -205,9 +205,10 @@ impl Holds for Obstacle {
         extent
     }
 
-    fn contacts(&self, dimension: usize) -> Vec<ContactRows> {
+    fn contacts(&self, dimension: usize) -> [Option<ContactRows>; 2] {
         let tangents = 1..self.row_count(dimension);
-        vec![ContactRows { normal: 0, tangents, restitution: self.restitution, friction: self.friction }]
+        let (restitution, friction) = (self.restitution, self.friction);
+        [Some(ContactRows { normal: 0, tangents, restitution, friction }), None]
     }
 
     fn curvature<const D: usize>(&self, motion: Motion<'_, D>) -> f64 {

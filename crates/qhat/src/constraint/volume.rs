@@ -29,7 +29,7 @@ pub struct Volume {
     faces: Vec<[usize; 3]>,
     /// For each particle and each face at it: the other two corners of the face, in order.
     around: Vec<Vec<[usize; 2]>>,
-    volume: Driven,
+    pub(crate) volume: Driven,
 }
 
 impl Volume {

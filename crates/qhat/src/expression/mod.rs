@@ -39,7 +39,7 @@ pub use scope::{Purpose, Scope, check_parameter};
 
 use crate::linalg::block::Block;
 use crate::point::Motion;
-use crate::space::ParticleId;
+use crate::space::{Dimension, ParticleId};
 pub(crate) use operation::Operation;
 
 use evaluate::{At, with_room};
@@ -93,6 +93,39 @@ impl Expression {
         let tree = syntax::tree(text, &tokens)?;
         let tape = lower::tape(text, tree, scope)?;
         Ok(Expression { parsed: Arc::new(Parsed { text: text.into(), dimension: scope.dimension.number(), tape }) })
+    }
+
+    /// A number that depends on parameters alone, by their names; `suggest` as in [`Scope`]. [`Expression::value`]
+    /// takes the values of the parameters, in their order, in the place of positions.
+    ///
+    /// ```
+    /// use qhat::Expression;
+    /// let area = Expression::of_parameters("pi*r^2/4", &["h", "r"], &|_, _| None)?;
+    /// assert_eq!(area.value(&[7.0, 2.0], &[], 0.0), std::f64::consts::PI);
+    /// # Ok::<(), qhat::ExpressionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Expression::parse`].
+    pub fn of_parameters(
+        text: &str,
+        names: &[&str],
+        suggest: &dyn Fn(&str, &[&'static str]) -> Option<String>,
+    ) -> Result<Self, ExpressionError> {
+        let place = |name: &str| names.iter().position(|known| *known == name).map(ParticleId);
+        let scope = Scope { suggest, ..Scope::new(Purpose::Parameters, Dimension::Two, &place) };
+        Expression::parse(text, &scope)
+    }
+
+    /// Whether an expression of parameters depends on the parameter at a place.
+    pub(crate) fn reads(&self, parameter: usize) -> bool {
+        self.tape().instructions.contains(&tape::Instruction::Position(parameter))
+    }
+
+    /// Whether the value is the same for all arguments.
+    pub fn is_constant(&self) -> bool {
+        let tape = self.tape();
+        tape.time.is_none() && tape.positions.is_empty() && tape.velocities.is_empty()
     }
 
     /// The text it was parsed from.

@@ -11,13 +11,16 @@ use std::ops::Range;
 
 impl<'a> Lowering<'a> {
     /// Names of the language itself.
-    fn own(&self) -> [&'static str; 3] {
-        [self.scope.purpose.variable(), CONSTANTS[0].0, CONSTANTS[1].0]
+    fn own(&self) -> impl Iterator<Item = &'static str> {
+        let variable = self.scope.purpose.variable();
+        [variable, CONSTANTS[0].0, CONSTANTS[1].0].into_iter().filter(|name| !name.is_empty())
     }
 
     /// Whether a name without coordinate is known.
     pub(super) fn has_meaning(&self, name: &str) -> bool {
-        self.own().contains(&name) || (self.scope.particle)(name).is_some() || (self.scope.parameter)(name).is_some()
+        self.own().any(|own| own == name)
+            || (self.scope.particle)(name).is_some()
+            || (self.scope.parameter)(name).is_some()
     }
 
     /// The value of the name at `span`.
@@ -50,9 +53,12 @@ impl<'a> Lowering<'a> {
                 Err(ExpressionError::new(span.clone(), message).with_help("give the parameter another name"))
             }
             (None, Some(value), None) => self.number(value, span),
-            (None, Some(_), Some(member)) => {
-                let message = format!("{} is a parameter, a number: it has no `.{}`", quoted(base), cut(member));
-                Err(ExpressionError::new(span.clone(), message).with_help(format!("write {}", quoted(base))))
+            (None, Some(_), Some(member)) => Err(self.parameter_with_member(base, member, span)),
+            (Some(place), _, None) if self.scope.purpose == Purpose::Parameters => {
+                self.push(Instruction::Position(place.0), span).map(Value::Number)
+            }
+            (Some(_), _, Some(member)) if self.scope.purpose == Purpose::Parameters => {
+                Err(self.parameter_with_member(base, member, span))
             }
             (Some(_), _, _) if self.scope.purpose == Purpose::Curve => {
                 let message = format!("{} is a particle, but a curve depends on its parameter alone", quoted(base));
@@ -69,6 +75,11 @@ impl<'a> Lowering<'a> {
             }
             (Some(particle), _, Some(member)) => self.coordinate(particle, base, member, span),
         }
+    }
+
+    fn parameter_with_member(&self, base: &str, member: &str, span: &Range<usize>) -> ExpressionError {
+        let message = format!("{} is a parameter, a number: it has no `.{}`", quoted(base), cut(member));
+        ExpressionError::new(span.clone(), message).with_help(format!("write {}", quoted(base)))
     }
 
     fn number(&mut self, value: f64, span: &Range<usize>) -> Lowered<Value> {
@@ -101,8 +112,8 @@ impl<'a> Lowering<'a> {
                  the velocities it allows follow from it"
             ))
             .with_help("write what the positions must satisfy; to act on velocities, use a force")),
-            // Scopes of time and of a curve have refused the particle.
-            Purpose::Potential | Purpose::Time | Purpose::Curve => {
+            // Scopes of time, of a curve and of parameters have refused the coordinate.
+            Purpose::Potential | Purpose::Time | Purpose::Curve | Purpose::Parameters => {
                 Err(error(format!("{name} is a velocity, but a potential energy depends on positions and time only"))
                     .with_help(
                         "write a force that depends on velocities as a force, one expression for each component",
@@ -133,11 +144,16 @@ impl<'a> Lowering<'a> {
             let message = format!("`{base}` is a function: its arguments are missing");
             return ExpressionError { message, ..error }.with_help(format!("write `{}`", function.usage));
         }
-        match (self.scope.suggest)(base, &self.own()) {
+        if self.scope.purpose == Purpose::Parameters && base == "t" {
+            let message = "`t` is time, and this number is the same at all times".to_owned();
+            return ExpressionError { message, ..error }.with_help("use parameters, `pi` and `tau`");
+        }
+        match (self.scope.suggest)(base, &self.own().collect::<Vec<_>>()) {
             Some(near) => error.with_help(format!("did you mean `{near}`?")),
             None => error.with_help(match self.scope.purpose {
                 Purpose::Time => "names are `t`, parameters, `pi` and `tau`",
                 Purpose::Curve => "names are `s` along the curve, parameters, `pi` and `tau`",
+                Purpose::Parameters => "names are the parameters of the scene, `pi` and `tau`",
                 _ => "names are particles, parameters, `t`, `pi` and `tau`",
             }),
         }

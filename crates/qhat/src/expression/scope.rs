@@ -18,12 +18,18 @@ pub enum Purpose {
     Time,
     /// A component of a curve: the parameter of the curve alone, written `s` in the place of `t`.
     Curve,
+    /// A number of a system: parameters alone, which are the inputs of the expression.
+    Parameters,
 }
 
 impl Purpose {
-    /// The letter of the variable that is no coordinate.
+    /// The letter of the variable that is no coordinate; empty where there is none.
     pub(super) fn variable(self) -> &'static str {
-        if self == Purpose::Curve { "s" } else { "t" }
+        match self {
+            Purpose::Curve => "s",
+            Purpose::Parameters => "",
+            _ => "t",
+        }
     }
 }
 

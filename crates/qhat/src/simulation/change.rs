@@ -64,6 +64,24 @@ impl Simulation {
         Ok(())
     }
 
+    /// Gives the parameters of the system new values, and goes back to the start that follows from them, with no
+    /// particle grabbed ([`System::bind`], [`System::start`]). The first solve afterwards finds what depends on the
+    /// geometry, such as the rows that follow from others. Bits and errors are those of a new simulation.
+    ///
+    /// # Errors
+    /// As [`System::bind`] and [`Simulation::new`]. Nothing is changed then.
+    pub fn bind(&mut self, values: &[f64]) -> Result<(), StepError> {
+        let mut bound = self.clone();
+        bound.release();
+        bound.system.bind(values)?;
+        bound.system.set_second_order(Vec::new());
+        bound.workspace = bound.workspace.renewed(&bound.system);
+        bound.start = bound.system.start();
+        bound.reset()?;
+        *self = bound;
+        Ok(())
+    }
+
     /// Changes a force of the builder to another, of the same kind or not. The jump of the potential energy is booked
     /// as external work.
     ///

@@ -82,16 +82,18 @@ pub(crate) struct ChainPlan {
     /// All other slots: fixed or nailed particles at the ends of chains, first particles of stretches (copies of the
     /// last particle of the stretch before), padding.
     pub(crate) copies: Vec<ChainSlot>,
-    /// Particles held by nails, with their points.
+    /// Particles held by nails, with their points, in the order of constraints.
     pub(crate) nailed: Vec<(usize, [f64; 3])>,
+    /// The block and the lane of each rod, with the place of its constraint.
+    links: Vec<(usize, usize, usize)>,
     /// Whether a chain is held at both ends: its rows depend on each other where it is straight.
     pub(crate) may_lose_rank: bool,
 }
 
-/// An open chain: its particles in order and the lengths of the rods between them.
+/// An open chain: its particles in order and the rods between them, by the places of their constraints.
 struct Chain {
     particles: Vec<usize>,
-    lengths: Vec<f64>,
+    rods: Vec<usize>,
 }
 
 impl ChainPlan {
@@ -115,10 +117,10 @@ impl ChainPlan {
             [chain.particles.first(), chain.particles.last()].map(|end| end.is_some_and(|&p| is_held[p]))
         };
         plan.may_lose_rank = chains.iter().any(|chain| ends(chain) == [true, true]);
-        chains.sort_by_key(|chain| std::cmp::Reverse(chain.lengths.len()));
+        chains.sort_by_key(|chain| std::cmp::Reverse(chain.rods.len()));
         let mut rest = &chains[..];
-        while let Some(longest) = rest.first().map(|chain| chain.lengths.len()) {
-            let alike = rest.iter().take(LANES).filter(|chain| 2 * chain.lengths.len() >= longest).count();
+        while let Some(longest) = rest.first().map(|chain| chain.rods.len()) {
+            let alike = rest.iter().take(LANES).filter(|chain| 2 * chain.rods.len() >= longest).count();
             if longest >= WORTH_CUTTING && alike < LANES {
                 plan.cut(inverse_mass, &is_held, &rest[0]);
                 rest = &rest[1..];
@@ -129,7 +131,29 @@ impl ChainPlan {
             }
         }
         plan.homes.sort_by_key(|place| place.particle);
+        plan.renew(constraints, inverse_mass);
         Some(plan)
+    }
+
+    /// Takes the numbers of the constraints and the inverse masses [1/kg]; the structure is the same.
+    pub(crate) fn renew(&mut self, constraints: &[NamedConstraint], inverse_mass: &[f64]) {
+        for place in self.homes.iter().chain(&self.copies) {
+            let w = &mut self.w[place.block].0[place.lane];
+            if *w > 0.0 {
+                *w = inverse_mass[place.particle];
+            }
+        }
+        for &(block, lane, place) in &self.links {
+            if let Some(rod) = constraints[place].constraint.as_rod() {
+                self.r[block].0[lane] = rod.length;
+                self.inverse_r[block].0[lane] = 1.0 / rod.length;
+            }
+        }
+        let nails = constraints.iter().filter_map(|named| match &named.constraint {
+            Constraint::Nail(nail) => Some(nail.at),
+            _ => None,
+        });
+        self.nailed.iter_mut().zip(nails).for_each(|((_, at), nail)| *at = nail);
     }
 
     /// Number of blocks.
@@ -163,24 +187,24 @@ impl ChainPlan {
     }
 
     fn cut(&mut self, inverse_mass: &[f64], is_held: &[bool], chain: &Chain) {
-        let rows = chain.lengths.len().div_ceil(LANES);
-        let stretches: Vec<(&[usize], &[f64])> = chain
-            .lengths
+        let rows = chain.rods.len().div_ceil(LANES);
+        let stretches: Vec<(&[usize], &[usize])> = chain
+            .rods
             .chunks(rows)
             .enumerate()
-            .map(|(k, lengths)| (&chain.particles[k * rows..=k * rows + lengths.len()], lengths))
+            .map(|(k, rods)| (&chain.particles[k * rows..=k * rows + rods.len()], rods))
             .collect();
         self.group(inverse_mass, is_held, &stretches, true);
     }
 
     fn side_by_side(&mut self, inverse_mass: &[f64], is_held: &[bool], chains: &[Chain]) {
-        let stretches: Vec<(&[usize], &[f64])> =
-            chains.iter().map(|chain| (&chain.particles[..], &chain.lengths[..])).collect();
+        let stretches: Vec<(&[usize], &[usize])> =
+            chains.iter().map(|chain| (&chain.particles[..], &chain.rods[..])).collect();
         self.group(inverse_mass, is_held, &stretches, false);
     }
 
     /// A group of up to eight stretches, the first of which is the longest.
-    fn group(&mut self, inverse_mass: &[f64], is_held: &[bool], stretches: &[(&[usize], &[f64])], is_coupled: bool) {
+    fn group(&mut self, inverse_mass: &[f64], is_held: &[bool], stretches: &[(&[usize], &[usize])], is_coupled: bool) {
         let (first, rows) = (self.w.len(), stretches[0].1.len());
         let end = first + rows + 1;
         for array in [&mut self.w, &mut self.counted, &mut self.r, &mut self.inverse_r, &mut self.rod] {
@@ -190,15 +214,15 @@ impl ChainPlan {
         let mut follows = F8::ZERO;
         for lane in 0..LANES {
             // An empty lane is padded with fixed copies of the first particle of the group.
-            let (particles, lengths) = stretches.get(lane).copied().unwrap_or((&stretches[0].0[..1], &[]));
+            let (particles, rods) = stretches.get(lane).copied().unwrap_or((&stretches[0].0[..1], &[]));
             let is_empty = lane >= stretches.len();
             if is_coupled && lane > 0 && !is_empty {
                 follows.0[lane] = 1.0;
             }
             for i in 0..=rows {
                 let block = first + i;
-                let place = ChainSlot { particle: particles[i.min(lengths.len())], block, lane };
-                let is_padding = is_empty || i > lengths.len();
+                let place = ChainSlot { particle: particles[i.min(rods.len())], block, lane };
+                let is_padding = is_empty || i > rods.len();
                 let moves = !is_padding && !is_held[place.particle];
                 if moves {
                     self.w[block].0[lane] = inverse_mass[place.particle];
@@ -210,8 +234,7 @@ impl ChainPlan {
                     self.copies.push(place);
                 }
                 if i > 0 && !is_padding {
-                    self.r[block].0[lane] = lengths[i - 1];
-                    self.inverse_r[block].0[lane] = 1.0 / lengths[i - 1];
+                    self.links.push((block, lane, rods[i - 1]));
                     self.rod[block].0[lane] = 1.0;
                     self.padding[block].0[lane] = 0.0;
                 }
@@ -225,7 +248,7 @@ impl ChainPlan {
 fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain>> {
     let mut rods = Vec::new();
     let mut touching = vec![[usize::MAX; 2]; is_held.len()];
-    for named in constraints {
+    for (place, named) in constraints.iter().enumerate() {
         let Some(rod) = named.constraint.as_rod() else {
             if matches!(named.constraint, Constraint::Nail(_)) {
                 continue;
@@ -249,12 +272,12 @@ fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain
                 touching[end][free] = rods.len();
             }
         }
-        rods.push((rod.a.0, rod.b.0, rod.length));
+        rods.push((rod.a.0, rod.b.0, place));
     }
     let mut chains = Vec::new();
     for particle in 0..is_held.len() {
         if !is_held[particle] && touching[particle][0] == usize::MAX {
-            chains.push(Chain { particles: vec![particle], lengths: Vec::new() });
+            chains.push(Chain { particles: vec![particle], rods: Vec::new() });
         }
     }
     let mut is_walked = vec![false; rods.len()];
@@ -265,14 +288,14 @@ fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain
         if is_walked[start] {
             continue;
         }
-        let mut chain = Chain { particles: vec![end], lengths: Vec::new() };
+        let mut chain = Chain { particles: vec![end], rods: Vec::new() };
         let (mut rod, mut particle) = (start, end);
         loop {
             is_walked[rod] = true;
-            let (a, b, length) = rods[rod];
+            let (a, b, place) = rods[rod];
             particle = if a == particle { b } else { a };
             chain.particles.push(particle);
-            chain.lengths.push(length);
+            chain.rods.push(place);
             if is_end(particle) {
                 break;
             }

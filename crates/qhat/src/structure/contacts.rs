@@ -46,7 +46,7 @@ impl Contacts {
             let limits = [constraint.breaks_at(), constraint.breaks_at_impulse()];
             let may_break = limits.iter().any(Option::is_some);
             let breakable = may_break.then_some(contacts.breakables.len());
-            for rows in constraint.contacts(dimension) {
+            for rows in constraint.contacts(dimension).into_iter().flatten() {
                 let normal = first_row + rows.normal;
                 let tangents = first_row + rows.tangents.start..first_row + rows.tangents.end;
                 let (restitution, friction) = (rows.restitution, rows.friction);
@@ -59,6 +59,23 @@ impl Contacts {
             }
         }
         contacts
+    }
+
+    /// Takes the numbers of the constraints anew; the rows are the same.
+    pub(crate) fn renew(&mut self, constraints: &[NamedConstraint], dimension: usize) {
+        for contact in &mut self.list {
+            let NamedConstraint { constraint, first_row, .. } = &constraints[contact.constraint];
+            for rows in constraint.contacts(dimension).into_iter().flatten() {
+                if first_row + rows.normal == contact.normal {
+                    (contact.restitution, contact.friction) = (rows.restitution, rows.friction);
+                }
+            }
+        }
+        for breakable in &mut self.breakables {
+            let constraint = &constraints[breakable.constraint].constraint;
+            breakable.limit = constraint.breaks_at().unwrap_or(f64::INFINITY);
+            breakable.impulse_limit = constraint.breaks_at_impulse().unwrap_or(f64::INFINITY);
+        }
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -1,10 +1,10 @@
 //! The builder of a System: collects particles, constraints and forces, and checks them.
 
+use super::parameters::Parameters;
 use super::{BuildError, Particle, ParticleError, System};
 use crate::constraint::{Constraint, ConstraintError, Holds, Layout};
 use crate::expression::{Expression, ExpressionError, Purpose, Scope};
 use crate::force::{Acts, Force, ForceError};
-use crate::modes::Modes;
 use crate::point::{block, minus, norm};
 use crate::settings::Feedback;
 use crate::space::{ConstraintId, Dimension, ForceId, ParticleId, in_dimension};
@@ -21,10 +21,11 @@ const MEMORY_LIMIT: u64 = 2 << 30;
 #[derive(Clone, Debug)]
 pub struct SystemBuilder {
     dimension: Dimension,
-    particles: Vec<Particle>,
-    constraints: Vec<(String, Constraint)>,
-    forces: Vec<(Option<String>, Force)>,
-    feedback: Feedback,
+    pub(super) particles: Vec<Particle>,
+    pub(super) constraints: Vec<(String, Constraint)>,
+    pub(super) forces: Vec<(Option<String>, Force)>,
+    pub(super) feedback: Feedback,
+    pub(super) parameters: Parameters,
     /// The particles by name, from the first expression on.
     names: OnceLock<BTreeMap<String, ParticleId>>,
 }
@@ -37,6 +38,7 @@ impl SystemBuilder {
             constraints: Vec::new(),
             forces: Vec::new(),
             feedback: Feedback::NONE,
+            parameters: Parameters::default(),
             names: OnceLock::new(),
         }
     }
@@ -111,6 +113,26 @@ impl SystemBuilder {
         (index < self.particles.len()).then_some(ParticleId(index))
     }
 
+    /// The id of the constraint at a place in the order of addition, from 0.
+    pub fn constraint_at(&self, index: usize) -> Option<ConstraintId> {
+        (index < self.constraints.len()).then_some(ConstraintId(index))
+    }
+
+    /// The id of the force at a place in the order of addition, from 0.
+    pub fn force_at(&self, index: usize) -> Option<ForceId> {
+        (index < self.forces.len()).then_some(ForceId(index))
+    }
+
+    /// The number of constraints that were added.
+    pub fn constraint_count(&self) -> usize {
+        self.constraints.len()
+    }
+
+    /// The number of forces that were added.
+    pub fn force_count(&self) -> usize {
+        self.forces.len()
+    }
+
     /// An expression in the names of the particles that were added so far.
     ///
     /// # Errors
@@ -151,7 +173,11 @@ impl SystemBuilder {
         self.check()?;
         let q: Vec<f64> = self.particles.iter().flat_map(|particle| particle.position.iter().copied()).collect();
         let qd: Vec<f64> = self.particles.iter().flat_map(|particle| particle.velocity.iter().copied()).collect();
-        let extent = in_dimension!(self.dimension, D => extent::<D>(&self.constraints, &q));
+        let constraints = self.constraints.iter().map(|(_, constraint)| constraint);
+        let extent = in_dimension!(self.dimension, D => extent::<D>(constraints, &q));
+        let mut parameters = self.parameters.clone();
+        parameters.before.reserve(parameters.uses.len());
+        let values: Vec<f64> = parameters.list.iter().map(|parameter| parameter.value).collect();
         let mut system = System {
             dimension: self.dimension,
             mass: self.particles.iter().map(|particle| particle.mass).collect(),
@@ -169,6 +195,9 @@ impl SystemBuilder {
             compliant: Vec::new(),
             feedback: self.feedback,
             extent,
+            parameters,
+            start_q: q,
+            start_qd: qd,
             contacts: Contacts::default(),
             second_order: Vec::new(),
             second_order_rods: Vec::new(),
@@ -185,7 +214,8 @@ impl SystemBuilder {
             return Err(BuildError::TooLarge { constraint, rows, memory: plan.memory(), limit: MEMORY_LIMIT });
         }
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, plan);
-        let state = State { modes: Modes::at_first(&system.contacts), ..State::new(q, qd) };
+        system.bind(&values)?;
+        let state = system.start();
         Ok((system, state))
     }
 
@@ -236,8 +266,8 @@ pub(crate) fn check_force(force: &Force, dimension: Dimension, particles: usize)
 }
 
 /// The mean rod length, else the diagonal of the box around all particles, else 1 [m].
-fn extent<const D: usize>(constraints: &[(String, Constraint)], q: &[f64]) -> f64 {
-    let lengths = constraints.iter().filter_map(|(_, constraint)| Some(constraint.as_rod()?.length));
+pub(super) fn extent<'a, const D: usize>(constraints: impl Iterator<Item = &'a Constraint>, q: &[f64]) -> f64 {
+    let lengths = constraints.filter_map(|constraint| Some(constraint.as_rod()?.length));
     let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
     if count > 0.0 {
         return sum / count;

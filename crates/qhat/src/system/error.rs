@@ -1,5 +1,6 @@
 //! The reasons for which a system cannot be built.
 
+use super::parameters::BindError;
 use crate::constraint::ConstraintError;
 use crate::force::ForceError;
 use crate::settings::SettingsError;
@@ -54,6 +55,9 @@ pub enum BuildError {
         /// The memory that is allowed \[bytes\].
         limit: u64,
     },
+    /// A parameter is out of range, or gives a number that its part refuses.
+    #[error(transparent)]
+    Parameters(#[from] BindError),
     /// A feedback coefficient is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),

@@ -4,11 +4,14 @@
 mod builder;
 mod error;
 mod lookup;
+mod parameters;
 mod particle;
 
 pub use builder::SystemBuilder;
 pub(crate) use builder::check_force;
+use builder::extent;
 pub use error::{BuildError, ParticleError};
+pub use parameters::{BindError, Parameter, ParameterUse, Quantity, Refused};
 pub use particle::Particle;
 
 use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, OnCurve, Rows, Softness};
@@ -19,6 +22,7 @@ use crate::settings::Feedback;
 use crate::space::{ConstraintId, Dimension, ParticleId};
 use crate::state::State;
 use crate::structure::{ChainPlan, Contacts, FlatClique, MatrixPlan, MatrixStructure};
+use parameters::Parameters;
 
 /// Particles, constraints and forces; see [`System::builder`].
 #[derive(Clone, Debug)]
@@ -42,6 +46,10 @@ pub struct System {
     pub(crate) compliant: Vec<Force>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
+    parameters: Parameters,
+    /// q [m] and q̇ [m/s] at the start, as the builder was given them or as they follow from the parameters.
+    start_q: Vec<f64>,
+    start_qd: Vec<f64>,
     /// The contacts and the breakable constraints.
     pub(crate) contacts: Contacts,
     /// The cliques whose joints rods hold only to second order, as a simulation finds them at its start.
@@ -201,6 +209,8 @@ impl System {
         let mut system = self.clone();
         system.set_constraints(kept.chain(others).collect());
         system.set_second_order(Vec::new());
+        // The uses name constraints by their places in this system.
+        system.parameters = Parameters::default();
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
         system
     }

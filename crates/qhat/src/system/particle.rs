@@ -46,16 +46,7 @@ impl Particle {
                 return Err(ParticleError::Components { what, dimension, count: components.len() });
             }
         }
-        if !self.position.iter().chain(&self.velocity).all(|x| x.is_finite()) {
-            return Err(ParticleError::NotFinite);
-        }
-        if !(self.mass.is_finite() && self.mass > 0.0 && (1.0 / self.mass).is_finite()) {
-            return Err(ParticleError::Mass { mass: self.mass });
-        }
-        if self.fixed && self.velocity.iter().any(|&v| v != 0.0) {
-            return Err(ParticleError::FixedWithVelocity);
-        }
-        Ok(())
+        check_numbers(&self.position, &self.velocity, self.mass, self.fixed)
     }
 
     /// The former name of [`Particle::fixed`].
@@ -63,4 +54,18 @@ impl Particle {
     pub fn held(self) -> Self {
         self.fixed()
     }
+}
+
+/// `Ok` if a particle may have these numbers.
+pub(super) fn check_numbers(x: &[f64], v: &[f64], mass: f64, is_fixed: bool) -> Result<(), ParticleError> {
+    if !x.iter().chain(v).all(|x| x.is_finite()) {
+        return Err(ParticleError::NotFinite);
+    }
+    if !(mass.is_finite() && mass > 0.0 && (1.0 / mass).is_finite()) {
+        return Err(ParticleError::Mass { mass });
+    }
+    if is_fixed && v.iter().any(|&v| v != 0.0) {
+        return Err(ParticleError::FixedWithVelocity);
+    }
+    Ok(())
 }
