@@ -9,6 +9,7 @@ import start, {
   type IntegratorFacts,
   integrators as integratorFacts,
   type Link,
+  type Parameter,
   type Projection,
   type Shape,
   type Shipped,
@@ -25,6 +26,7 @@ export type {
   IntegratorFacts,
   IntegratorName,
   Link,
+  Parameter,
   Projection,
   Shape,
   ShapeKind,
@@ -90,6 +92,15 @@ export class Simulation {
   structure(): Structure {
     const structure = this.inner.structure();
     return { ...structure, links: structure.shapes.filter(isLink) };
+  }
+
+  parameters(): Parameter[] {
+    return this.inner.parameters();
+  }
+
+  /** Gives the parameters new values, in their order, and goes back to the start that follows from them. */
+  bind(values: readonly number[]): void {
+    attempt(() => this.inner.bind(Float64Array.from(values)));
   }
 
   /** The shapes of the scene at a time in s; the engine is asked for driven shapes only. */

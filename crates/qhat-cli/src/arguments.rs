@@ -1,5 +1,6 @@
 //! The commands, arguments and options of the command line.
 
+use crate::trajectory::Quantity;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint};
 use qhat::Integrator;
@@ -61,11 +62,27 @@ fn parameter(text: &str) -> Result<(String, f64), String> {
 #[derive(Args, Debug)]
 pub(crate) struct Run {
     /// A scene file (.toml or .json), the name of a scene that comes with qhat, or - for stdin
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub(crate) scene: String,
+    #[arg(value_hint = ValueHint::FilePath, required_unless_present = "from")]
+    pub(crate) scene: Option<String>,
 
     #[command(flatten)]
     pub(crate) parameters: Parameters,
+
+    /// Go on from this trajectory (.npz) of a run that ended, was interrupted or was killed, as if it had not stopped;
+    /// the output replaces it unless -o names another file
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath,
+          conflicts_with_all = ["set", "select", "frames", "h", "integrator", "tolerance", "max_substeps", "no_tension"])]
+    pub(crate) from: Option<PathBuf>,
+
+    /// Write these quantities of every frame, as in positions,energy; all writes every one [default: t, positions,
+    /// velocities, constraint_forces, multipliers, tension, tension_is_unique]
+    #[arg(long, value_name = "NAMES", requires = "output", value_parser = selection)]
+    pub(crate) select: Option<Selection>,
+
+    /// Write the trajectory so far every so many seconds of real time, as 30s, or every so many frames, as 100frames:
+    /// `--from` goes on from it after a crash
+    #[arg(long, value_name = "INTERVAL", value_parser = interval)]
+    pub(crate) checkpoint: Option<Interval>,
 
     /// Write the trajectory to this file, whose ending gives the format: .npz (NumPy) or .csv
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -152,6 +169,37 @@ pub(crate) struct Render {
     /// Show no progress bar
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+/// The quantities of a trajectory.
+pub(crate) type Selection = std::sync::Arc<[Quantity]>;
+
+fn selection(text: &str) -> Result<Selection, String> {
+    crate::trajectory::selection(text).map(Into::into)
+}
+
+/// The time from one checkpoint to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Interval {
+    /// Seconds of real time.
+    Seconds(f64),
+    Frames(usize),
+}
+
+/// An interval, as in 30s or 100frames.
+fn interval(text: &str) -> Result<Interval, String> {
+    let wrong = || format!("an interval is written as in 30s or 100frames, and is above 0, not `{text}`");
+    let (text, frames) = match (text.strip_suffix("frames").or(text.strip_suffix("frame")), text.strip_suffix('s')) {
+        (Some(frames), _) => (frames, true),
+        (None, Some(seconds)) => (seconds, false),
+        (None, None) => return Err(wrong()),
+    };
+    if frames {
+        text.trim().parse().ok().filter(|&frames| frames > 0).map(Interval::Frames).ok_or_else(wrong)
+    } else {
+        let seconds = text.trim().parse().ok().filter(|seconds: &f64| *seconds > 0.0 && seconds.is_finite());
+        seconds.map(Interval::Seconds).ok_or_else(wrong)
+    }
 }
 
 /// Width and height, as in 1200x800.

@@ -1,6 +1,7 @@
 //! The output file of a command. It replaces an existing file only with --force, and appears only when complete.
 
 use crate::failure::Failure;
+use std::cell::Cell;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,8 @@ const YOUNG: Duration = Duration::from_secs(60);
 #[derive(Debug)]
 pub(crate) struct Output {
     path: PathBuf,
-    force: bool,
+    /// Whether a file of this name may be replaced: by the option, or because it is an earlier one of this run.
+    force: Cell<bool>,
 }
 
 impl Output {
@@ -27,7 +29,7 @@ impl Output {
     /// # Errors
     /// A missing folder, a folder in place of a file, a file that exists without `force`.
     pub(crate) fn new(path: &Path, companions: &[PathBuf], force: bool) -> Result<Self, Failure> {
-        let output = Output { path: path.to_owned(), force };
+        let output = Output { path: path.to_owned(), force: Cell::new(force) };
         if !output.folder().is_dir() {
             return Err(Failure::input(format!("there is no folder `{}` to write in", output.folder().display())));
         }
@@ -92,14 +94,16 @@ impl Output {
 
     /// Renames a finished file to the output.
     pub(crate) fn put(&self, file: NamedTempFile) -> Result<(), Failure> {
-        self.put_as(file, &self.path)
+        self.put_as(file, &self.path)?;
+        self.force.set(true);
+        Ok(())
     }
 
     /// Renames a finished file to a companion of the output.
     pub(crate) fn put_as(&self, file: NamedTempFile, path: &Path) -> Result<(), Failure> {
         // A name must not reach the disk before the bytes do: after a power cut the file would be empty.
         file.as_file().sync_all().map_err(|error| self.cannot_write(&error))?;
-        let outcome = if self.force { file.persist(path) } else { file.persist_noclobber(path) };
+        let outcome = if self.force.get() { file.persist(path) } else { file.persist_noclobber(path) };
         match outcome {
             Ok(_) => {
                 self.sync_folder();

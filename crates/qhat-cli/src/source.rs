@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use qhat_scene::{Format, Scene, SceneErrors, Shipped, from_utf16, shipped};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, Read};
@@ -19,6 +20,14 @@ pub(crate) struct Source {
     format: Format,
     /// The path of a file; none for the other sources.
     path: Option<PathBuf>,
+}
+
+/// The text of a scene, kept with the results.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Text {
+    name: String,
+    bytes: Vec<u8>,
+    is_json: bool,
 }
 
 impl Source {
@@ -65,6 +74,16 @@ impl Source {
     pub(crate) fn current_bytes(&self) -> Vec<u8> {
         let again = self.path.as_ref().and_then(|path| File::open(path).ok());
         again.and_then(|file| bytes(file, &self.name).ok()).unwrap_or_else(|| self.bytes.clone())
+    }
+
+    /// The text, to be kept.
+    pub(crate) fn text(&self) -> Text {
+        Text { name: self.file_name(), bytes: self.bytes.clone(), is_json: self.format == Format::Json }
+    }
+
+    /// The source of a text that was kept.
+    pub(crate) fn restored(Text { name, bytes, is_json }: Text) -> Self {
+        Source { name, bytes, format: if is_json { Format::Json } else { Format::Toml }, path: None }
     }
 
     /// The name without its folders.

@@ -6,8 +6,8 @@
 mod convert;
 mod record;
 
-use qhat::{ForceError, Integrator, Settings};
-use qhat_scene::Format;
+use qhat::{BindError, ForceError, Integrator, Settings};
+use qhat_scene::{Format, Scene};
 use record::{Record, error, list};
 use wasm_bindgen::prelude::*;
 
@@ -43,6 +43,9 @@ extern "C" {
     /// A list of records of `types.d.ts`.
     #[wasm_bindgen(typescript_type = "IntegratorFacts[]")]
     pub type Integrators;
+    /// A list of records of `types.d.ts`.
+    #[wasm_bindgen(typescript_type = "Parameter[]")]
+    pub type Parameters;
     /// A list of strings.
     #[wasm_bindgen(typescript_type = "string[]")]
     pub type Strings;
@@ -84,9 +87,7 @@ pub fn default_frame_work() -> f64 {
 #[wasm_bindgen]
 pub struct Simulation {
     inner: qhat::Simulation,
-    name: String,
-    description: String,
-    duration: f64,
+    scene: Scene,
 }
 
 #[wasm_bindgen]
@@ -98,12 +99,51 @@ impl Simulation {
         let scene = qhat_scene::load(text, source_name, Format::from_path(source_name))
             .map_err(|cause| error("SceneErrors", cause))?;
         let inner = scene.simulation().map_err(|cause| error("StepError", cause))?;
-        Ok(Simulation { inner, name: scene.name, description: scene.description, duration: scene.duration })
+        Ok(Simulation { inner, scene })
     }
 
     /// The structure of the scene, in the present formulation.
     pub fn structure(&self) -> Structure {
-        convert::structure(&self.inner, &self.name, &self.description, self.duration)
+        let Scene { name, description, duration, .. } = &self.scene;
+        convert::structure(&self.inner, name, description, *duration)
+    }
+
+    /// The parameters of the scene, with their present values.
+    pub fn parameters(&self) -> Parameters {
+        list(self.scene.system.parameters().iter().map(convert::parameter)).unchecked_into()
+    }
+
+    /// Gives the parameters new values, one for each, and goes back to the start that follows from them, with the
+    /// settings of now and the forces of the scene. Throws `BindError`, `SceneErrors` or `StepError`; nothing is changed
+    /// then.
+    pub fn bind(&mut self, values: &[f64]) -> Result<(), JsValue> {
+        let parameters = self.scene.system.parameters();
+        if values.len() != parameters.len() {
+            let (wanted, given) = (parameters.len(), values.len());
+            return Err(error("BindError", BindError::Count { wanted, given }));
+        }
+        let checked = parameters.iter().zip(values).try_for_each(|(parameter, &value)| parameter.check(value));
+        checked.map_err(|cause| error("BindError", cause))?;
+        let mut scene = self.scene.clone();
+        scene.bind(values).map_err(|cause| error("SceneErrors", cause))?;
+        let settings = *self.inner.settings();
+        let inner = qhat::Simulation::new(scene.system.clone(), scene.state.clone(), settings);
+        self.inner = inner.map_err(|cause| error("StepError", cause))?;
+        self.scene = scene;
+        Ok(())
+    }
+
+    /// The simulation as bytes, from which [`Simulation::restore`] goes on with the same bits in another process.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        self.inner.to_bytes()
+    }
+
+    /// Takes the state of bytes that a simulation of the same scene gave. Throws `RestoreError`; nothing is changed
+    /// then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), JsValue> {
+        let restored = qhat::Simulation::restore(self.scene.system.clone(), bytes);
+        self.inner = restored.map_err(|cause| error("RestoreError", cause))?;
+        Ok(())
     }
 
     /// The driven shapes at a time \[s\], in the same order as among the shapes of the structure.

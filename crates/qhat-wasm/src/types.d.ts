@@ -128,6 +128,17 @@ export interface Structure {
   shapes: Shape[];
 }
 
+/** A named number of a scene. */
+export interface Parameter {
+  name: string;
+  value: number;
+  /** null: no limit */
+  min: number | null;
+  max: number | null;
+  /** may be empty */
+  unit: string;
+}
+
 /** The values of all controls of the page. */
 export interface Controls {
   /** s */

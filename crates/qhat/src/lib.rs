@@ -146,6 +146,8 @@ mod multiplier;
 mod number;
 mod point;
 mod report;
+#[cfg(feature = "serde")]
+mod saved;
 mod settings;
 mod simulation;
 mod softness;
@@ -180,6 +182,8 @@ pub use multiplier::Freedom;
 pub use number::larger;
 pub use point::Vector;
 pub use report::{Event, EventKind, MaxTension, Projection, RepeatedWarning, Solver, StepReport, Warning, WarningLog};
+#[cfg(feature = "serde")]
+pub use saved::RestoreError;
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
 pub use simulation::Simulation;
 pub use softness::SoftRow;

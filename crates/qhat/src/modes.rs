@@ -4,6 +4,7 @@ use crate::structure::{Contact, Contacts};
 
 /// The mode of a contact: its active rows, and the way in which its friction acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Mode {
     /// Apart: no row is active.
     Open,
@@ -30,6 +31,7 @@ impl Mode {
 ///
 /// In [`Modes`] the direction is that at the start of the next substep; within a substep `course` says how it goes on.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Slip {
     /// d, a unit vector. Friction acts along −d.
     pub(crate) direction: [f64; 2],
@@ -43,6 +45,7 @@ pub(crate) struct Slip {
 
 /// The direction of friction within a substep.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Course {
     /// The same all the time.
     Kept,
@@ -102,6 +105,7 @@ impl Slip {
 
 /// The modes of all contacts, and which breakable constraints are broken.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Modes {
     pub(crate) contacts: Vec<Mode>,
     pub(crate) broken: Vec<bool>,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 /// q, q̇ and t, the energy account, and what an integrator carries from frame to frame.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     pub(crate) q: Vec<f64>,
     pub(crate) qd: Vec<f64>,
@@ -44,6 +45,7 @@ impl Work {
 /// The rows that follow from others, found where the equation was first solved with these rows active. It stays until
 /// a row that was left out is no longer satisfied by the others, or other rows become active.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rank {
     /// For each row whether it was inactive; empty in a system without contacts.
     pub(crate) inactive: Vec<bool>,
@@ -58,6 +60,7 @@ pub(crate) struct Rank {
 
 /// The data that an integrator carries from one frame to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Carry {
     /// The last multipliers, the first guess of the next.
     pub(crate) lambda: Vec<f64>,
@@ -78,6 +81,7 @@ pub(crate) struct Carry {
 
 /// An integrator that auto stays with, and for how many frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Choice {
     pub(crate) integrator: Integrator,
     pub(crate) frames: u32,
@@ -85,6 +89,7 @@ pub(crate) struct Choice {
 
 /// A substep of a method of collocation: a guess for the next, and its error.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Collocation {
     /// The length of that substep [s].
     pub(crate) h: f64,
@@ -96,6 +101,7 @@ pub(crate) struct Collocation {
 
 /// What a method of constant substeps knows of their lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct SteadyMemory {
     /// Substeps in a row that would have been accepted at twice the length.
     pub(crate) calm: u64,
@@ -105,6 +111,7 @@ pub(crate) struct SteadyMemory {
 
 /// The state before the last step of a method that solves at the end of the step.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Previous {
     pub(crate) q: Vec<f64>,
     pub(crate) qd: Vec<f64>,

@@ -37,6 +37,7 @@ mod order;
 mod reactions;
 mod redundant;
 mod refused;
+mod saved;
 mod second_order;
 mod serde;
 mod share;

@@ -64,6 +64,19 @@ export class Comparison {
     if (this.on) this.setOn(true);
   }
 
+  /** A new ghost of the run, whose parameters have changed. */
+  rebuild(): void {
+    const { run, controls } = this.session;
+    this.close();
+    if (!this.on || !run || !controls) return;
+    try {
+      this.ghost = run.beside(this.controlsOf(controls));
+      this.stopped = null;
+    } catch (error) {
+      this.stopped = messageOf(error);
+    }
+  }
+
   reset(): void {
     this.ghost?.reset();
     this.stopped = this.ghost?.stopped?.message ?? null;

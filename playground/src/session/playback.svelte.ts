@@ -43,6 +43,11 @@ export class Playback {
       this.stopped = null;
     });
     comparison.changed.listen(() => this.reset());
+    session.bound.listen(() => {
+      hand.release();
+      comparison.rebuild();
+      this.begin();
+    });
   }
 
   play(): void {

@@ -41,6 +41,8 @@ export class Run {
     const { text, sourceName } = this.simulation;
     const run = Run.open(text, sourceName);
     try {
+      const parameters = this.simulation.parameters();
+      if (parameters.length > 0) run.bind(parameters.map(({ value }) => value));
       run.simulation.setControls(controls);
     } catch (error) {
       run.close();
@@ -60,6 +62,14 @@ export class Run {
       this.stopped = error;
       return false;
     }
+  }
+
+  /** Gives the parameters of the scene new values, and goes to the start that follows from them. */
+  bind(values: readonly number[]): void {
+    this.simulation.bind(values);
+    this.stopped = null;
+    this.report = null;
+    this.balance = this.simulation.energy().balance;
   }
 
   /** Returns to the start of the motion with the present controls. */

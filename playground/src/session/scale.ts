@@ -52,3 +52,16 @@ export function sliderOf(scale: Scale): Slider {
     value: (position) => fromTick(position, scale),
   };
 }
+
+/** The slider of a parameter: over its range, or where it has none, from 0 to twice its first value. */
+export function spanOf(
+  { min, max }: { min: number | null; max: number | null },
+  original: number,
+): Scale & { kind: 'linear' } {
+  const reach = original === 0 ? 1 : 2 * Math.abs(original);
+  const from = min ?? Math.min(original < 0 || original === 0 ? -reach : 0, max === null ? 0 : max - reach);
+  const to = max ?? Math.max(original > 0 || original === 0 ? reach : 0, from + reach);
+  // a power of ten gives steps that a person can read
+  const step = 10 ** Math.floor(Math.log10(Math.max((to - from) / 100, Number.MIN_VALUE)));
+  return { kind: 'linear', from, to, step };
+}

@@ -5,12 +5,13 @@ import {
   type Controls,
   type IntegratorFacts,
   integrators,
+  type Parameter,
   type Shipped,
   type Structure,
   shippedScenes,
   startEngine,
 } from '../engine';
-import { sceneInAddress } from './address';
+import { sceneInAddress, type Values, valuesInAddress } from './address';
 import { downOf, type NumberControl, withControl } from './controls';
 import { DEFAULT_SCENE } from './gallery';
 import { Run } from './run';
@@ -30,6 +31,9 @@ export class Session {
   controls = $state.raw<Controls | null>(null);
   /** the controls as the scene sets them: the values to which a control is reset */
   original = $state.raw<Controls | null>(null);
+  parameters = $state.raw<Parameter[]>([]);
+  /** the parameters as the scene sets them */
+  originalParameters = $state.raw<Parameter[]>([]);
   /** the control that the engine refused last, and the message */
   refusal = $state.raw<{ key: string; message: string } | null>(null);
   run: Run | null = null;
@@ -40,6 +44,8 @@ export class Session {
   readonly crashed = new Signal();
   /** Another scene is open, at its start. */
   readonly opened = new Signal();
+  /** The scene has other parameters, and is at the start that follows from them. */
+  readonly bound = new Signal();
   /** The run took these controls; a listener that throws an `EngineError` makes it a refusal. */
   readonly controlsTaken = new Signal<[Controls]>();
   /** The controls were set or refused; the fields above say which. */
@@ -69,27 +75,37 @@ export class Session {
 
   /** Opens the scene in the address, else the scene that the command was given, else the default. */
   async openAddress(): Promise<void> {
-    const name = sceneInAddress(location);
-    if (name !== null) this.openNamed(name);
-    else this.open((await sceneFromCommand()) ?? shipped(DEFAULT_SCENE)!);
+    const [name, values] = [sceneInAddress(location), valuesInAddress(location)];
+    if (name !== null) this.openNamed(name, values);
+    else this.open((await sceneFromCommand()) ?? shipped(DEFAULT_SCENE)!, values);
   }
 
-  openNamed(name: string): void {
+  openNamed(name: string, values: Values = {}): void {
     const source = shipped(name);
-    if (source) this.open(source);
+    if (source) this.open(source, values);
     else this.fail(`No scene is called “${name}”. The list above has every scene.`);
   }
 
-  open(source: SceneSource): void {
+  open(source: SceneSource, values: Values = {}): void {
     let run: Run;
+    let original: Parameter[];
     try {
       run = Run.open(source.text, source.fileName);
+      original = run.simulation.parameters();
+      try {
+        if (Object.keys(values).length > 0) run.bind(withValues(original, values));
+      } catch (error) {
+        run.close();
+        throw error;
+      }
     } catch (error) {
       this.fail(messageOf(error));
       this.source = source;
       return;
     }
     this.close();
+    this.originalParameters = original;
+    this.parameters = run.simulation.parameters();
     this.run = run;
     this.source = source;
     this.failure = null;
@@ -134,6 +150,33 @@ export class Session {
     if (this.controls) this.apply('formulation', { ...this.controls, formulation });
   }
 
+  /** Gives a parameter a value. The controls keep what a person has changed. */
+  setParameter(name: string, value: number): void {
+    const { run } = this;
+    if (!run || !this.controls || !this.original) return;
+    const changed = changes(this.original, this.controls);
+    try {
+      run.bind(withValues(this.parameters, { [name]: value }));
+      this.original = run.simulation.controls();
+      run.simulation.setControls({ ...this.original, ...changed });
+      this.refusal = null;
+    } catch (error) {
+      this.refusal = { key: `parameter-${name}`, message: messageOf(error) };
+      return;
+    }
+    this.parameters = run.simulation.parameters();
+    this.structure = run.simulation.structure();
+    this.controls = run.simulation.controls();
+    this.bound.send();
+  }
+
+  /** The values of parameters that differ from those of the scene. */
+  get changedParameters(): Values {
+    const own = new Map(this.originalParameters.map(({ name, value }) => [name, value]));
+    const changed = this.parameters.filter(({ name, value }) => own.get(name) !== value);
+    return Object.fromEntries(changed.map(({ name, value }) => [name, value]));
+  }
+
   private apply(key: string, controls: Controls): void {
     if (!this.run) return;
     try {
@@ -153,4 +196,24 @@ export class Session {
 /** The message of an error. */
 export function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
+}
+
+/** The values of parameters, some of them changed. Throws where a name is unknown or a value is no number. */
+function withValues(parameters: readonly Parameter[], values: Values): number[] {
+  for (const [name, value] of Object.entries(values)) {
+    if (!parameters.some((parameter) => parameter.name === name)) {
+      const names = parameters.map((parameter) => `“${parameter.name}”`).join(', ');
+      const known = names === '' ? 'this scene has no parameters' : `the parameters of this scene are ${names}`;
+      throw new Error(`No parameter is called “${name}”: ${known}.`);
+    }
+    if (Number.isNaN(value)) throw new Error(`The value of the parameter “${name}” is no number.`);
+  }
+  return parameters.map(({ name, value }) => values[name] ?? value);
+}
+
+/** The controls that differ from the original ones. */
+function changes(original: Controls, controls: Controls): Partial<Controls> {
+  const keys = Object.keys(controls) as (keyof Controls)[];
+  const changed = keys.filter((key) => String(controls[key]) !== String(original[key]));
+  return Object.fromEntries(changed.map((key) => [key, controls[key]]));
 }

@@ -139,3 +139,39 @@ it('classic and modern forms have their own rows', async () => {
   expect(nails).toBeGreaterThan(0);
   expect(await rows()).toBe(classic + nails);
 });
+
+it('a parameter starts the scene again with its value, which the address keeps', async () => {
+  const { page } = await lab.open('/?scene=slope&set=mu=0.7');
+  const entry = page.getByTestId('entry-parameter-mu');
+  expect(await entry.inputValue()).toBe('0.7');
+  const downhill = async () => {
+    await atStart(page);
+    await step(page, 100);
+    const { positions } = await page.evaluate(() => window.qhat.state());
+    return positions[4];
+  };
+  // the block "slow" slides with g (0.6 − 0.8 μ) for a second, 0.8 of it along x
+  const slides = (mu: number) => 0.8 * 0.5 * 9.81 * (0.6 - 0.8 * mu);
+  expect(await downhill()).toBeCloseTo(slides(0.7), 6);
+  await entry.fill('0.3');
+  await entry.press('Enter');
+  expect(await downhill()).toBeCloseTo(slides(0.3), 6);
+  expect(new URL(page.url()).search).toBe('?scene=slope&set=mu=0.3');
+  // without friction the block has no rows of friction, and the scene is built anew
+  await page.getByTestId('slider-parameter-mu').fill('0');
+  expect(await downhill()).toBeCloseTo(slides(0), 6);
+  await entry.fill('2');
+  await entry.press('Enter');
+  const row = page.getByTestId('control-parameter-mu');
+  expect(await row.getByRole('alert').innerText()).toContain('must be at least 0 and at most 1, but is 2');
+  await row.getByRole('button').click();
+  expect(await entry.inputValue()).toBe('0.5');
+  expect(new URL(page.url()).search).toBe('?scene=slope');
+});
+
+it('a parameter in the address that the scene does not have is refused in words', async () => {
+  const { page } = await lab.open('/?scene=slope&set=nu=0.7');
+  expect(await page.locator('main, body').first().innerText()).toContain(
+    'No parameter is called “nu”: the parameters of this scene are “mu”.',
+  );
+});

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { fromTick, TICKS, toTick } from '../../src/session/scale';
+import { fromTick, spanOf, TICKS, toTick } from '../../src/session/scale';
 
 const range = { from: 1e-6, to: 100 };
 
@@ -31,5 +31,22 @@ describe('the logarithmic slider', () => {
   it('keeps what lies beyond its ends at the ends', () => {
     expect(toTick(1e9, range)).toBe(TICKS);
     expect(toTick(1e-12, range)).toBe(toTick(1e-6, range));
+  });
+});
+
+describe('the slider of a parameter', () => {
+  it.each([
+    [{ min: 0.1, max: 5 }, 1, [0.1, 5]],
+    [{ min: null, max: null }, 2, [0, 4]],
+    [{ min: null, max: null }, -2, [-4, 0]],
+    [{ min: null, max: null }, 0, [-1, 1]],
+    [{ min: 0, max: null }, 3, [0, 6]],
+    [{ min: null, max: 10 }, 3, [0, 10]],
+    [{ min: 20, max: null }, 25, [20, 70]],
+  ])('of %o at %d spans %o', (range, original, [from, to]) => {
+    const span = spanOf(range, original);
+    expect([span.from, span.to]).toEqual([from, to]);
+    expect(span.step).toBeGreaterThan(0);
+    expect((span.to - span.from) / span.step).toBeGreaterThanOrEqual(99.9);
   });
 });

@@ -6,6 +6,7 @@ use crate::arguments;
 use crate::failure::{Failure, warn};
 use crate::output::{Output, ending};
 use crate::source::Source;
+use crate::trajectory::Stored;
 use qhat_shapes::{Options, png, svg};
 use std::io::Write;
 use std::path::Path;
@@ -37,7 +38,12 @@ pub(crate) fn render(arguments: &arguments::Render) -> Result<ExitCode, Failure>
     let format = Format::of(&arguments.output)?;
     let output = Output::new(&arguments.output, &[], arguments.force)?;
     let source = Source::read(&arguments.scene)?;
-    let scene = source.load(&arguments.parameters.set).map_err(Failure::formatted)?;
+    // A trajectory is drawn with the parameters that it was computed with.
+    let mut parameters = arguments.parameters.set.clone();
+    if let Some(path) = arguments.from.as_ref().filter(|_| parameters.is_empty()) {
+        parameters = Stored::open(path)?.parameters(&source.hash());
+    }
+    let scene = source.load(&parameters).map_err(Failure::formatted)?;
     let still = match &arguments.from {
         Some(path) => Still::stored(&scene, &source, path, arguments.frame)?,
         None => Still::simulated(&scene, arguments.at.unwrap_or(0.0), arguments.quiet)?,

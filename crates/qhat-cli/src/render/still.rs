@@ -6,7 +6,7 @@ use crate::run::interrupt::Interrupt;
 use crate::run::progress::Progress;
 use crate::source::Source;
 use crate::status::Status;
-use crate::trajectory::stored::Stored;
+use crate::trajectory::Stored;
 use qhat::{Constraint, ParticleId, Seconds, Settings, Simulation, State, StepError, System, evaluate};
 use qhat_scene::Scene;
 use qhat_shapes::{Picture, Reading};

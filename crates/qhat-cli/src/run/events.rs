@@ -2,10 +2,10 @@
 
 use crate::print::count;
 use qhat::{Event, EventKind};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The number of contact events of each kind, and the constraints that broke.
-#[derive(Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Events {
     impacts: usize,
     closed: usize,
@@ -19,7 +19,7 @@ pub(super) struct Events {
 
 /// An impact, or a constraint that broke: the constraint, the time \[s\] and the impulse \[N·s\], which is 0 where a
 /// tension broke the constraint.
-#[derive(Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Blow {
     constraint: String,
     time: f64,

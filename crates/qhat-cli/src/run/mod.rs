@@ -1,23 +1,28 @@
 //! `qhat run`: from a scene to a trajectory and a summary.
 
+mod checkpoints;
 mod events;
 pub(crate) mod frames;
 pub(crate) mod interrupt;
 mod origin;
 pub(crate) mod progress;
+mod snapshot;
 mod summary;
 
 use crate::arguments;
 use crate::failure::{BAD_INPUT, Failure, warn};
 use crate::print;
 use crate::source::Source;
-use crate::trajectory::{Kept, Recorder, Target};
+use crate::trajectory::{Extras, Format, Frame, Kept, Quantity, Recorder, Stored, Target};
+use checkpoints::Checkpoints;
 use cpu_time::ProcessTime;
 use frames::Frames;
 use interrupt::Interrupt;
 use origin::Origin;
 use progress::Progress;
-use qhat::{Settings, Simulation, StepError, System, Terms, evaluate};
+use qhat::{Energy, Settings, Simulation, StepError, System, Terms, evaluate};
+use qhat_scene::Scene;
+use snapshot::Former;
 use std::process::ExitCode;
 use std::time::Instant;
 use summary::{Summary, Tally};
@@ -25,31 +30,58 @@ use summary::{Summary, Tally};
 /// Simulates a scene as the arguments say.
 pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let began = Instant::now();
-    let source = Source::read(&arguments.scene)?;
-    let scene = source.load(&arguments.parameters.set).map_err(Failure::formatted)?;
-    let settings = settings(arguments, scene.settings)?;
-    // An integrator from the command line may find no events, which the reader of the scene could not know.
-    qhat::check_start(&scene.system, &scene.state, &settings).map_err(Failure::input)?;
-    let frames = Frames::new(arguments.duration.unwrap_or(scene.duration), arguments.frames, &settings)?;
-    let target = arguments.output.as_deref().map(|path| Target::new(path, arguments.force)).transpose()?;
+    let Plan { source, scene, parameters, settings, frames, former } = Plan::of(arguments)?;
+    let target = Plan::target(arguments)?;
     let output = target.as_ref().map(|target| target.path().display().to_string());
     // Ctrl-C is handled before the first file exists, so that no temporary file is left behind.
     let interrupt = Interrupt::watch()?;
-    let recorder = target.map(|target| Recorder::new(target, &scene.system)).transpose()?;
+    let mut before = arguments.from.as_deref().map(Stored::open).transpose()?;
+    let quantities = match (&before, &arguments.select) {
+        (Some(before), _) => before.quantities(),
+        (None, Some(selected)) => selected.to_vec(),
+        (None, None) => Quantity::USUAL.to_vec(),
+    };
+    let mut recorder = target.map(|target| Recorder::new(target, &scene.system, quantities)).transpose()?;
+    if let (Some(recorder), Some(before)) = (&mut recorder, &mut before) {
+        recorder.take(before)?;
+    }
     let mut origin = Origin::new(&source, &scene, &settings, frames);
 
     let progress = Progress::new(frames, arguments.quiet);
-    let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt };
+    let checkpoints = arguments.checkpoint.map(Checkpoints::new);
+    let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt, checkpoints };
+    // In a CSV there is no place for events.
+    job.tally.all_events = matches!(job.recorder, Some(Recorder::Npz(_))).then(Vec::new);
+    let keep = |tally: &Tally, simulation: &Simulation| {
+        let mut origin = origin.clone();
+        origin.reach(tally);
+        let snapshot = snapshot::bytes(&source, &parameters, frames, tally, simulation)?;
+        Ok((serde_json::to_string(&origin).map_err(Failure::input)?, snapshot))
+    };
     let (system, state) = (scene.system, scene.state);
-    let stopped = match Simulation::new(system.clone(), state.clone(), settings) {
-        Ok(mut simulation) => {
+    let begun = match former {
+        Some((simulation, tally)) => {
+            job.tally = tally;
+            Ok(simulation)
+        }
+        None => Simulation::new(system.clone(), state.clone(), settings).map(|mut simulation| {
             simulation.record_tension(!arguments.no_tension);
-            job.simulate(simulation)?
+            simulation
+        }),
+    };
+    let (stopped, snapshot) = match begun {
+        Ok(mut simulation) => {
+            let stopped = job.simulate(&mut simulation, &keep)?;
+            // After an error or a frame that was not written, the state is not that of the last frame.
+            let is_at_a_frame = matches!(stopped, None | Some(Stop::Interrupt));
+            let is_kept = is_at_a_frame && job.recorder.is_some();
+            (stopped, if is_kept { Some(keep(&job.tally, &simulation)?.1) } else { None })
         }
         // Where no positions satisfy the constraints, the start is the only frame.
         Err(error) => {
-            job.start(&system, &evaluate(&system, &state))?;
-            Some(Stop::Error(error))
+            let unknown = Energy { kinetic: f64::NAN, potential: f64::NAN, ..Energy::default() };
+            job.start(&system, &evaluate(&system, &state), unknown)?;
+            (Some(Stop::Error(error)), None)
         }
     };
     job.progress.finish();
@@ -61,7 +93,8 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
             if is_unwritten { origin.clone() } else { origin.shortened(output.as_deref().unwrap_or_default()) };
         let [whole, part] = [&origin, &shortened].map(serde_json::to_string);
         let (whole, part) = (whole.map_err(Failure::input)?, part.map_err(Failure::input)?);
-        if recorder.finish(&whole, &part)? == Kept::Part {
+        let events = job.tally.all_events.as_deref().unwrap_or_default();
+        if recorder.finish(&whole, &part, Extras { snapshot: snapshot.as_deref(), events })? == Kept::Part {
             (origin, is_unwritten) = (shortened, true);
         }
     }
@@ -75,6 +108,50 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
         warn(format!("{}: {message}", origin.status));
     }
     Ok(if is_unwritten { ExitCode::from(BAD_INPUT) } else { origin.status.exit_code() })
+}
+
+/// What is to be simulated, from the start or from a former run.
+struct Plan {
+    source: Source,
+    scene: Scene,
+    parameters: Vec<(String, f64)>,
+    settings: Settings,
+    frames: Frames,
+    former: Option<(Simulation, Tally)>,
+}
+
+impl Plan {
+    fn of(arguments: &arguments::Run) -> Result<Self, Failure> {
+        let source = arguments.scene.as_deref().map(Source::read).transpose()?;
+        if let Some(path) = &arguments.from {
+            let former = Former::read(path, source.as_ref(), arguments.duration)?;
+            let Former { source, scene, parameters, frames, tally, simulation } = former;
+            let settings = *simulation.settings();
+            return Ok(Plan { source, scene, parameters, settings, frames, former: Some((simulation, tally)) });
+        }
+        let Some(source) = source else { return Err(Failure::input("name a scene, or a trajectory with --from")) };
+        let parameters = arguments.parameters.set.clone();
+        let scene = source.load(&parameters).map_err(Failure::formatted)?;
+        let settings = settings(arguments, scene.settings)?;
+        // An integrator from the command line may find no events, which the reader of the scene could not know.
+        qhat::check_start(&scene.system, &scene.state, &settings).map_err(Failure::input)?;
+        let frames = Frames::new(arguments.duration.unwrap_or(scene.duration), arguments.frames, &settings)?;
+        Ok(Plan { source, scene, parameters, settings, frames, former: None })
+    }
+
+    /// The output, which is the former trajectory where the run goes on and no other output is named.
+    fn target(arguments: &arguments::Run) -> Result<Option<Target>, Failure> {
+        let path = arguments.output.as_deref().or(arguments.from.as_deref());
+        let is_same = arguments.from.as_deref() == path;
+        let target = path.map(|path| Target::new(path, arguments.force || is_same)).transpose()?;
+        let holds_snapshots = target.as_ref().is_some_and(|target| target.format() == Format::Npz);
+        if (arguments.from.is_some() || arguments.checkpoint.is_some()) && !holds_snapshots {
+            return Err(Failure::input(
+                "a run can go on from a file in .npz alone: write one with -o run.npz for --checkpoint and --from",
+            ));
+        }
+        Ok(target)
+    }
 }
 
 /// The scene's settings, changed by the options of the command line.
@@ -111,22 +188,28 @@ struct Job {
     tally: Tally,
     progress: Progress,
     interrupt: Interrupt,
+    checkpoints: Option<Checkpoints>,
 }
+
+/// The origin and the snapshot of a run at the end of a frame.
+type Keep<'a> = &'a dyn Fn(&Tally, &Simulation) -> Result<(String, Vec<u8>), Failure>;
 
 impl Job {
     /// Steps from frame to frame. Returns the reason where the run ends early.
-    fn simulate(&mut self, mut simulation: Simulation) -> Result<Option<Stop>, Failure> {
-        self.tally.begun(&simulation);
-        let terms = simulation.terms();
-        self.start(simulation.system(), &terms)?;
-        for index in 1..=self.frames.count {
+    fn simulate(&mut self, simulation: &mut Simulation, keep: Keep<'_>) -> Result<Option<Stop>, Failure> {
+        if self.tally.frames == 0 {
+            self.tally.begun(simulation);
+            let terms = simulation.terms();
+            self.start(simulation.system(), &terms, simulation.energy())?;
+        }
+        for index in self.tally.frames..=self.frames.count {
             if self.interrupt.came() {
                 return Ok(Some(Stop::Interrupt));
             }
             let clock = ProcessTime::now();
             let outcome = simulation.advance(self.frames.length());
             self.tally.cpu += clock.elapsed();
-            self.tally.reached(&simulation);
+            self.tally.reached(simulation);
             match outcome {
                 Ok(report) => self.tally.step(simulation.system(), &report, self.frames.time(index)),
                 // The frame is no multiple of h, so the options are at fault. The state is unchanged.
@@ -135,27 +218,45 @@ impl Job {
             }
             if self.recorder.is_some() {
                 let terms = simulation.terms();
-                if let Err(failure) = self.record(simulation.system(), self.frames.time(index), &terms) {
+                let (time, energy) = (self.frames.time(index), simulation.energy());
+                if let Err(failure) = self.record(simulation.system(), &Frame { time, terms: &terms, energy }) {
                     return Ok(Some(Stop::Unwritten(failure)));
                 }
             } else {
                 self.tally.frames += 1;
+            }
+            if index < self.frames.count {
+                self.checkpoint(simulation, keep)?;
             }
             self.progress.at(index, self.frames.time(index));
         }
         Ok(None)
     }
 
-    fn start(&mut self, system: &System, terms: &Terms) -> Result<(), Failure> {
+    fn start(&mut self, system: &System, terms: &Terms, energy: Energy) -> Result<(), Failure> {
         self.tally.start(system, terms);
-        self.record(system, 0.0, terms)
+        self.record(system, &Frame { time: 0.0, terms, energy })
     }
 
-    fn record(&mut self, system: &System, time: f64, terms: &Terms) -> Result<(), Failure> {
-        self.tally.frame(system, time, terms);
+    fn record(&mut self, system: &System, frame: &Frame<'_>) -> Result<(), Failure> {
+        self.tally.frame(system, frame.time, frame.terms);
         match &mut self.recorder {
-            Some(recorder) => recorder.frame(time, terms),
+            Some(recorder) => recorder.frame(frame),
             None => Ok(()),
         }
+    }
+
+    /// Writes the trajectory so far, where the time for it has come. A disk that is full keeps the file before.
+    fn checkpoint(&mut self, simulation: &Simulation, keep: Keep<'_>) -> Result<(), Failure> {
+        let (Some(checkpoints), Some(recorder)) = (&mut self.checkpoints, &mut self.recorder) else { return Ok(()) };
+        if !checkpoints.are_due() {
+            return Ok(());
+        }
+        let (origin, snapshot) = keep(&self.tally, simulation)?;
+        let events = self.tally.all_events.as_deref().unwrap_or_default();
+        if let Err(failure) = recorder.checkpoint(&origin, Extras { snapshot: Some(&snapshot), events }) {
+            checkpoints.failed(&failure);
+        }
+        Ok(())
     }
 }

@@ -73,6 +73,14 @@ impl Origin {
         }
     }
 
+    /// Notes that the run has reached a frame and has not ended.
+    pub(super) fn reach(&mut self, tally: &Tally) {
+        self.time_reached = tally.time_reached;
+        self.warnings = tally.warnings();
+        self.status = Status::Interrupted;
+        self.error = Some(format!("a checkpoint at t = {} s of a run that did not end", Seconds(tally.time_reached)));
+    }
+
     /// Notes the end of the run.
     ///
     /// # Errors

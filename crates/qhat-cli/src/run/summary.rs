@@ -5,15 +5,15 @@ use super::origin::Origin;
 use crate::failure::Failure;
 use crate::print::{self, count, small};
 use crate::status::Status;
-use qhat::{Digits, Integrator, Simulation, Solver, StepReport, System, Terms, WarningLog, larger};
-use serde::Serialize;
+use qhat::{Digits, Event, Integrator, Simulation, Solver, StepReport, System, Terms, WarningLog, larger};
+use serde::{Deserialize, Serialize, Serializer};
 use std::time::Duration;
 
 /// The energy error, over the largest kinetic energy, above which the summary begins with it [1].
 const CAREFUL: f64 = 0.01;
 
 /// Counts and maxima over a run.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Tally {
     /// Frames reached, the start included.
     pub(super) frames: usize,
@@ -31,6 +31,8 @@ pub(crate) struct Tally {
     start_is_off: [bool; 2],
     /// t of the last good state \[s\].
     pub(super) time_reached: f64,
+    /// The CPU time of this process, which no later one goes on counting.
+    #[serde(skip)]
     pub(super) cpu: Duration,
     log: WarningLog,
     /// The first integrator that was left to advance a frame and is not adaptive, else the last one.
@@ -38,11 +40,13 @@ pub(crate) struct Tally {
     /// The number of frames of each integrator and solver, in the order of their first frames.
     carried: Vec<Carried>,
     events: Events,
+    /// Every event, for a trajectory that keeps them.
+    pub(super) all_events: Option<Vec<Event>>,
     max_tension: Option<MaxTension>,
 }
 
 /// The largest tension or thrust of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct MaxTension {
     /// \[N\]; negative if it is a thrust.
     tension: f64,
@@ -54,10 +58,9 @@ struct MaxTension {
 }
 
 /// The number of frames that one integrator advanced with one solver of the multipliers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Carried {
-    integrator: &'static str,
-    #[serde(serialize_with = "print::display")]
+    integrator: String,
     solver: Solver,
     frames: usize,
 }
@@ -102,6 +105,9 @@ impl Tally {
             self.max_tension = Some(MaxTension { tension, link, time, is_unique });
         }
         report.events.iter().for_each(|event| self.events.note(event));
+        if let Some(all) = &mut self.all_events {
+            all.extend(report.events.iter().cloned());
+        }
         self.log.note(&report.warnings, time);
     }
 
@@ -113,7 +119,7 @@ impl Tally {
         let mut known = self.carried.iter_mut();
         match known.find(|carried| carried.integrator == integrator && carried.solver == solver) {
             Some(carried) => carried.frames += 1,
-            None => self.carried.push(Carried { integrator, solver, frames: 1 }),
+            None => self.carried.push(Carried { integrator: integrator.to_owned(), solver, frames: 1 }),
         }
     }
 
@@ -157,6 +163,7 @@ pub(crate) struct Summary<'a> {
     caution: Option<String>,
     scene: &'a str,
     integrator: &'a str,
+    #[serde(serialize_with = "carriers")]
     carried: &'a [Carried],
     events: &'a Events,
     h: f64,
@@ -273,6 +280,21 @@ impl<'a> Summary<'a> {
             .push(("output", self.output.clone().unwrap_or_else(|| "none; -o FILE.npz or FILE.csv writes one".into())));
         print::table(&format!("{}: {}", self.scene, self.status), &lines)
     }
+}
+
+/// Integrators and solvers by their names.
+fn carriers<S: Serializer>(carried: &[Carried], serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Named<'a> {
+        integrator: &'a str,
+        solver: String,
+        frames: usize,
+    }
+    serializer.collect_seq(carried.iter().map(|Carried { integrator, solver, frames }| Named {
+        integrator,
+        solver: solver.to_string(),
+        frames: *frames,
+    }))
 }
 
 /// A force in four digits, without an exponent.

@@ -1,14 +1,13 @@
 //! CSV: a header, then one line a frame. The format has no place for the origin, which goes into FILE.csv.json.
 
 use super::Kept;
+use super::quantity::{Frame, Quantity};
 use super::target::Target;
 use crate::failure::Failure;
-use qhat::{System, Terms};
+use qhat::System;
 use std::fmt::Write as _;
 use std::io::{self, Read, Seek, SeekFrom, Write as _};
 use tempfile::NamedTempFile;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Bytes of whole lines that are gathered before they are written.
 const GATHERED: usize = 1 << 16;
@@ -16,6 +15,7 @@ const GATHERED: usize = 1 << 16;
 /// A trajectory being written as CSV.
 pub(crate) struct Recorder {
     target: Target,
+    quantities: Vec<Quantity>,
     file: NamedTempFile,
     /// The bytes of whole lines in the file.
     written: u64,
@@ -25,25 +25,18 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
+    pub(super) fn new(target: Target, system: &System, quantities: Vec<Quantity>) -> Result<Self, Failure> {
         let (file, lines) = (target.temporary()?, csv::Writer::from_writer(Vec::new()));
-        let mut recorder = Recorder { target, file, written: 0, lines, number: String::new() };
-        recorder.lines.write_record(columns(system)).map_err(|error| recorder.failed(&io::Error::other(error)))?;
+        let columns: Vec<String> = quantities.iter().flat_map(|quantity| quantity.columns(system)).collect();
+        let mut recorder = Recorder { target, quantities, file, written: 0, lines, number: String::new() };
+        recorder.lines.write_record(columns).map_err(|error| recorder.failed(&io::Error::other(error)))?;
         Ok(recorder)
     }
 
-    pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
-        let is_unique = super::as_numbers(&terms.tension_is_unique);
-        let arrays: [&[f64]; 7] = [
-            &[time],
-            &terms.positions,
-            &terms.velocities,
-            &terms.constraint_forces,
-            &terms.multipliers,
-            &terms.tension,
-            &is_unique,
-        ];
-        self.add(arrays.into_iter().flatten()).map_err(|error| self.failed(&io::Error::other(error)))?;
+    pub(super) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+        let rows: Vec<_> = self.quantities.iter().map(|quantity| quantity.row(frame)).collect();
+        let numbers = rows.iter().flat_map(|row| row.iter());
+        self.add(numbers).map_err(|error| self.failed(&io::Error::other(error)))?;
         let outcome = if self.lines.get_ref().len() >= GATHERED { self.write() } else { Ok(()) };
         outcome.map_err(|error| self.failed(&error))
     }
@@ -122,19 +115,4 @@ impl Recorder {
     fn failed(&self, error: &io::Error) -> Failure {
         self.target.cannot_write(error)
     }
-}
-
-/// The names of the columns: `t`, positions `bob.x` …, velocities `bob.vx` …, constraint forces `bob.fx` …,
-/// `row.multiplier` …, `link.tension` …, `link.tension_is_unique` ….
-fn columns(system: &System) -> Vec<String> {
-    let mut columns = vec!["t".to_owned()];
-    for quantity in ["", "v", "f"] {
-        for name in system.particle_names() {
-            columns.extend(AXES[..system.dimension()].iter().map(|axis| format!("{name}.{quantity}{axis}")));
-        }
-    }
-    columns.extend(system.row_names().iter().map(|row| format!("{row}.multiplier")));
-    columns.extend(system.links().map(|link| format!("{}.tension", link.name)));
-    columns.extend(system.links().map(|link| format!("{}.tension_is_unique", link.name)));
-    columns
 }

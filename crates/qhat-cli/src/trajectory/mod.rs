@@ -3,14 +3,17 @@
 mod csv;
 mod npy;
 mod npz;
-pub(crate) mod stored;
+mod quantity;
+mod stored;
 mod target;
 
+pub(crate) use quantity::{Frame, Quantity, selection};
+pub(crate) use stored::Stored;
 pub(crate) use target::Target;
 
 use crate::failure::Failure;
 use crate::output::ending;
-use qhat::{System, Terms};
+use qhat::{Event, System};
 use std::path::Path;
 
 /// The format of a trajectory.
@@ -39,11 +42,6 @@ impl Format {
     }
 }
 
-/// 1 for true and 0 for false: every array of a trajectory holds numbers.
-fn as_numbers(flags: &[bool]) -> Vec<f64> {
-    flags.iter().map(|&flag| f64::from(u8::from(flag))).collect()
-}
-
 /// The frames of a trajectory that are in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kept {
@@ -51,6 +49,14 @@ pub(crate) enum Kept {
     Whole,
     /// The first frames, as many as fit on the disk.
     Part,
+}
+
+/// What a trajectory keeps beside its frames.
+#[derive(Clone, Copy)]
+pub(crate) struct Extras<'a> {
+    /// The bytes from which the run goes on, if it can.
+    pub(crate) snapshot: Option<&'a [u8]>,
+    pub(crate) events: &'a [Event],
 }
 
 /// A trajectory being written.
@@ -61,26 +67,42 @@ pub(crate) enum Recorder {
 
 impl Recorder {
     /// Opens temporary files beside the target.
-    pub(crate) fn new(target: Target, system: &System) -> Result<Self, Failure> {
-        match target.format() {
-            Format::Npz => npz::Recorder::new(target, system).map(Recorder::Npz),
-            Format::Csv => csv::Recorder::new(target, system).map(|recorder| Recorder::Csv(Box::new(recorder))),
+    pub(crate) fn new(target: Target, system: &System, quantities: Vec<Quantity>) -> Result<Self, Failure> {
+        Ok(match target.format() {
+            Format::Npz => Recorder::Npz(npz::Recorder::new(target, system, &quantities)?),
+            Format::Csv => Recorder::Csv(Box::new(csv::Recorder::new(target, system, quantities)?)),
+        })
+    }
+
+    /// Adds a frame.
+    pub(crate) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+        match self {
+            Recorder::Npz(recorder) => recorder.frame(frame),
+            Recorder::Csv(recorder) => recorder.frame(frame),
         }
     }
 
-    /// Adds a frame: t \[s\] and everything evaluated there.
-    pub(crate) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
+    /// Takes the frames of a former trajectory.
+    pub(crate) fn take(&mut self, former: &mut Stored<'_>) -> Result<(), Failure> {
         match self {
-            Recorder::Npz(recorder) => recorder.frame(time, terms),
-            Recorder::Csv(recorder) => recorder.frame(time, terms),
+            Recorder::Npz(recorder) => recorder.take(former),
+            Recorder::Csv(_) => Err(Failure::input("a run goes on in a file that ends in .npz")),
+        }
+    }
+
+    /// Puts a file with the frames so far in place, and goes on.
+    pub(crate) fn checkpoint(&mut self, origin: &str, extras: Extras<'_>) -> Result<(), Failure> {
+        match self {
+            Recorder::Npz(recorder) => recorder.checkpoint(origin, extras),
+            Recorder::Csv(_) => Err(Failure::input("checkpoints are written to a file that ends in .npz")),
         }
     }
 
     /// Puts the finished files in place, with the origin, a line of JSON: `whole` with all frames, or `part` where the
-    /// last frames could not be written.
-    pub(crate) fn finish(self, whole: &str, part: &str) -> Result<Kept, Failure> {
+    /// last frames could not be written. An NPZ keeps the extras, too.
+    pub(crate) fn finish(self, whole: &str, part: &str, extras: Extras<'_>) -> Result<Kept, Failure> {
         match self {
-            Recorder::Npz(recorder) => recorder.finish(whole, part),
+            Recorder::Npz(recorder) => recorder.finish(whole, part, extras),
             Recorder::Csv(recorder) => recorder.finish(whole, part),
         }
     }

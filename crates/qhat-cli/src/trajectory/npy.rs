@@ -23,6 +23,15 @@ pub(crate) fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
 
 /// The type of little-endian float64.
 pub(crate) const FLOAT64: &str = "<f8";
+/// The type of a byte.
+pub(crate) const BYTE: &str = "|u1";
+
+/// A complete array of numbers of the shape (n,).
+pub(crate) fn numbers(numbers: &[f64]) -> Vec<u8> {
+    let mut bytes = header(FLOAT64, &[numbers.len()]);
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    bytes
+}
 
 /// A complete array of texts of the shape () or (n,). NumPy keeps texts as UTF-32 of one length, padded with zeros.
 pub(crate) fn texts(shape: &[usize], texts: &[impl AsRef<str>]) -> Vec<u8> {

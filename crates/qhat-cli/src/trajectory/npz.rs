@@ -4,11 +4,13 @@
 //! each array grows in a file of its own, and the zip is written at the end. On a full disk the first frames are kept,
 //! as many as fit.
 
-use super::Kept;
 use super::npy;
+use super::quantity::{ENERGIES, Frame, Quantity};
+use super::stored::Stored;
 use super::target::Target;
+use super::{Extras, Kept};
 use crate::failure::Failure;
-use qhat::{System, Terms};
+use qhat::{Event, EventKind, System};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Seek, SeekFrom, Write};
 use tempfile::NamedTempFile;
@@ -21,7 +23,7 @@ const WIDE: u64 = u32::MAX as u64 / 2;
 
 /// One array; each frame adds a row.
 struct Array {
-    name: &'static str,
+    quantity: Quantity,
     /// The shape of one row.
     shape: Vec<usize>,
     file: BufWriter<File>,
@@ -40,10 +42,10 @@ impl Array {
     /// Gives up what is not on the disk yet. Returns the number of whole rows there; none where rows have no bytes.
     fn give_up(self) -> io::Result<(Self, Option<u64>)> {
         let row = self.row();
-        let Array { name, shape, file } = self;
+        let Array { quantity, shape, file } = self;
         let (file, _) = file.into_parts();
         let whole = file.metadata()?.len().checked_div(row);
-        Ok((Array { name, shape, file: BufWriter::new(file) }, whole))
+        Ok((Array { quantity, shape, file: BufWriter::new(file) }, whole))
     }
 
     /// Shortens the file to so many rows.
@@ -59,45 +61,54 @@ pub(crate) struct Recorder {
     frames: usize,
     arrays: Vec<Array>,
     names: Vec<(&'static str, Vec<String>)>,
+    /// The mass of each particle [kg]; infinite where the particle is fixed.
+    masses: Vec<f64>,
 }
 
 impl Recorder {
-    pub(super) fn new(target: Target, system: &System) -> Result<Self, Failure> {
-        let (n, d, m) = (system.particle_count(), system.dimension(), system.row_count());
-        let links: Vec<String> = system.links().map(|link| link.name.to_owned()).collect();
-        let array = |name, shape: &[usize]| -> Result<Array, Failure> {
-            Ok(Array { name, shape: shape.to_vec(), file: BufWriter::new(target.scratch()?) })
+    pub(super) fn new(target: Target, system: &System, quantities: &[Quantity]) -> Result<Self, Failure> {
+        let array = |&quantity: &Quantity| -> Result<Array, Failure> {
+            Ok(Array { quantity, shape: quantity.shape(system), file: BufWriter::new(target.scratch()?) })
         };
-        let arrays = vec![
-            array("t", &[])?,
-            array("positions", &[n, d])?,
-            array("velocities", &[n, d])?,
-            array("constraint_forces", &[n, d])?,
-            array("multipliers", &[m])?,
-            array("tension", &[links.len()])?,
-            array("tension_is_unique", &[links.len()])?,
-        ];
-        let names = vec![
+        let arrays = quantities.iter().map(array).collect::<Result<Vec<_>, _>>()?;
+        let mut names = vec![
             ("particle_ids", system.particle_names().to_vec()),
             ("row_names", system.row_names().to_vec()),
-            ("link_names", links),
+            ("link_names", system.links().map(|link| link.name.to_owned()).collect()),
         ];
-        Ok(Recorder { target, frames: 0, arrays, names })
+        if quantities.contains(&Quantity::Energy) {
+            names.push(("energy_names", ENERGIES.map(str::to_owned).to_vec()));
+        }
+        let masses = system.inverse_masses().iter().map(|w| 1.0 / w);
+        let masses =
+            masses.zip(system.masses()).map(|(inverse, &mass)| if inverse.is_finite() { mass } else { inverse });
+        Ok(Recorder { target, frames: 0, arrays, names, masses: masses.collect() })
     }
 
-    pub(super) fn frame(&mut self, time: f64, terms: &Terms) -> Result<(), Failure> {
-        let is_unique = super::as_numbers(&terms.tension_is_unique);
-        let rows: [&[f64]; 7] = [
-            &[time],
-            &terms.positions,
-            &terms.velocities,
-            &terms.constraint_forces,
-            &terms.multipliers,
-            &terms.tension,
-            &is_unique,
-        ];
-        let mut arrays = self.arrays.iter_mut().zip(rows);
-        match arrays.try_for_each(|(array, row)| array.append(row)) {
+    /// Takes the frames of a former trajectory.
+    pub(super) fn take(&mut self, former: &mut Stored<'_>) -> Result<(), Failure> {
+        for array in &mut self.arrays {
+            let width = array.shape.iter().product::<usize>() as u64;
+            former.copy(array.quantity.name(), width, &mut array.file)?;
+        }
+        self.frames = former.frames()? as usize;
+        Ok(())
+    }
+
+    /// Puts a file with the frames so far in place, and goes on.
+    pub(super) fn checkpoint(&mut self, origin: &str, extras: Extras<'_>) -> Result<(), Failure> {
+        let flushed = self.arrays.iter_mut().try_for_each(|array| array.file.flush());
+        let packed = flushed.and_then(|()| self.pack(origin, extras));
+        // The next row goes to the end of each array, also after a file that did not fit.
+        let at_the_end = self.arrays.iter_mut().try_for_each(|array| array.file.seek(SeekFrom::End(0)).map(|_| ()));
+        let file =
+            packed.and_then(|file| at_the_end.map(|()| file)).map_err(|error| self.target.cannot_write(&error))?;
+        self.target.put(file)
+    }
+
+    pub(super) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+        let mut arrays = self.arrays.iter_mut();
+        match arrays.try_for_each(|array| array.append(&array.quantity.row(frame))) {
             Ok(()) => {
                 self.frames += 1;
                 Ok(())
@@ -129,14 +140,17 @@ impl Recorder {
     }
 
     /// Packs the arrays. On a full disk the last half of the frames is given up, again and again, until the rest fits.
-    pub(super) fn finish(mut self, whole: &str, part: &str) -> Result<Kept, Failure> {
+    pub(super) fn finish(mut self, whole: &str, part: &str, extras: Extras<'_>) -> Result<Kept, Failure> {
         let mut kept = Kept::Whole;
         if self.arrays.iter_mut().try_for_each(|array| array.file.flush()).is_err() {
             self.keep_whole_frames().map_err(|error| self.target.cannot_write(&error))?;
             kept = Kept::Part;
         }
         loop {
-            match self.pack(if kept == Kept::Whole { whole } else { part }) {
+            // The snapshot belongs to the last frame.
+            let (origin, extras) =
+                if kept == Kept::Whole { (whole, extras) } else { (part, Extras { snapshot: None, ..extras }) };
+            match self.pack(origin, extras) {
                 Ok(file) => return self.target.put(file).map(|()| kept),
                 Err(error) if self.frames <= 1 || error.kind() != io::ErrorKind::StorageFull => {
                     return Err(self.target.cannot_write(&error));
@@ -150,10 +164,10 @@ impl Recorder {
         }
     }
 
-    fn pack(&mut self, origin: &str) -> io::Result<NamedTempFile> {
+    fn pack(&mut self, origin: &str, extras: Extras<'_>) -> io::Result<NamedTempFile> {
         let file = self.target.temporary_file()?;
         let mut zip = ZipWriter::new(BufWriter::new(file.as_file()));
-        if let Err(error) = self.fill(&mut zip, origin) {
+        if let Err(error) = self.fill(&mut zip, origin, extras) {
             // A zip that is dropped before its end tries to write that, and prints the error.
             std::mem::forget(zip);
             return Err(error);
@@ -163,7 +177,7 @@ impl Recorder {
     }
 
     /// Writes all members of the zip, up to its list of members.
-    fn fill(&mut self, zip: &mut ZipWriter<BufWriter<&File>>, origin: &str) -> io::Result<()> {
+    fn fill(&mut self, zip: &mut ZipWriter<BufWriter<&File>>, origin: &str, snapshot: Option<&[u8]>) -> io::Result<()> {
         // The bytes depend on the scene and the settings alone, so that two runs can be compared. They hold no date.
         let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
         for array in &mut self.arrays {
@@ -171,7 +185,7 @@ impl Recorder {
             let numbers = array.file.get_mut();
             let wide = numbers.metadata()?.len() > WIDE;
             numbers.rewind()?;
-            zip.start_file(format!("{}.npy", array.name), options.large_file(wide))?;
+            zip.start_file(format!("{}.npy", array.quantity.name()), options.large_file(wide))?;
             zip.write_all(&npy::header(npy::FLOAT64, &shape))?;
             io::copy(&mut BufReader::new(numbers), zip)?;
         }
@@ -179,8 +193,48 @@ impl Recorder {
             zip.start_file(format!("{name}.npy"), options)?;
             zip.write_all(&npy::texts(&[texts.len()], texts))?;
         }
+        zip.start_file("masses.npy", options)?;
+        zip.write_all(&npy::numbers(&self.masses))?;
+        for (name, bytes) in event_arrays(extras.events) {
+            zip.start_file(format!("{name}.npy"), options)?;
+            zip.write_all(&bytes)?;
+        }
+        if let Some(bytes) = extras.snapshot {
+            zip.start_file("snapshot.npy", options)?;
+            zip.write_all(&npy::header(npy::BYTE, &[bytes.len()]))?;
+            zip.write_all(bytes)?;
+        }
         zip.start_file("origin.npy", options)?;
         zip.write_all(&npy::texts(&[], &[origin]))?;
         zip.flush()
+    }
+}
+
+/// The arrays of the events: when, of which constraint, of which kind, how fast [m/s] and how hard [N·s].
+fn event_arrays(events: &[Event]) -> [(&'static str, Vec<u8>); 5] {
+    let numbers = |of: &dyn Fn(&Event) -> f64| npy::numbers(&events.iter().map(of).collect::<Vec<f64>>());
+    let texts =
+        |of: &dyn Fn(&Event) -> String| npy::texts(&[events.len()], &events.iter().map(of).collect::<Vec<String>>());
+    let speed = |event: &Event| if let EventKind::Impact { speed } = event.kind { speed } else { 0.0 };
+    [
+        ("event_t", numbers(&|event| event.time)),
+        ("event_constraint", texts(&|event| event.constraint.clone())),
+        ("event_kind", texts(&|event| kind(event.kind).to_owned())),
+        ("event_speed", numbers(&speed)),
+        ("event_impulse", numbers(&|event| event.impulse)),
+    ]
+}
+
+/// The word of a kind of event.
+fn kind(kind: EventKind) -> &'static str {
+    match kind {
+        EventKind::Impact { .. } => "impact",
+        EventKind::Closed => "closed",
+        EventKind::Opened => "opened",
+        EventKind::Slipped => "slipped",
+        EventKind::Stuck => "stuck",
+        EventKind::Broke => "broke",
+        // Kinds of a later engine have a word when they have one here.
+        _ => "other",
     }
 }

@@ -1,9 +1,10 @@
-//! Reads one frame of a trajectory back from NPZ.
+//! Reads a trajectory back from NPZ: one frame, all rows of an array, the snapshot of the run.
 
+use super::quantity::Quantity;
 use crate::failure::Failure;
 use npyz::{NpyFile, NpyHeader, Order};
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 use zip::ZipArchive;
 
@@ -78,12 +79,66 @@ impl<'a> Stored<'a> {
         serde_json::from_str(file.into_vec::<String>().ok()?.first()?).ok()
     }
 
+    /// The quantities that the trajectory has, in the order of files.
+    pub(crate) fn quantities(&self) -> Vec<Quantity> {
+        let has = |quantity: &Quantity| self.archive.index_for_name(&format!("{}.npy", quantity.name())).is_some();
+        Quantity::ALL.into_iter().filter(has).collect()
+    }
+
+    /// The parameters of the run, if it was one of the scene with this hash.
+    pub(crate) fn parameters(&mut self, scene_hash: &str) -> Vec<(String, f64)> {
+        let origin = self.origin().filter(|origin| origin.get("scene_hash").is_some_and(|hash| hash == scene_hash));
+        let table = origin.as_ref().and_then(|origin| origin.get("parameters")?.as_object());
+        let pairs = table.into_iter().flatten();
+        pairs.filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
+    }
+
+    /// The bytes of the snapshot from which the run goes on; `None` if there is none.
+    pub(crate) fn snapshot(&mut self) -> Result<Option<Vec<u8>>, Failure> {
+        if self.archive.by_name("snapshot.npy").is_err() {
+            return Ok(None);
+        }
+        let mut read = || -> io::Result<Vec<u8>> {
+            let (header, mut member) = self.header("snapshot")?;
+            if header.shape().len() != 1 || header.dtype().num_bytes() != Some(1) {
+                return Err(io::Error::new(io::ErrorKind::InvalidData, "it is no list of bytes"));
+            }
+            let mut bytes = Vec::new();
+            member.read_to_end(&mut bytes)?;
+            if bytes.len() as u64 == header.shape()[0] {
+                Ok(bytes)
+            } else {
+                Err(io::Error::new(io::ErrorKind::UnexpectedEof, "it is cut"))
+            }
+        };
+        let bytes = read();
+        bytes.map(Some).map_err(|error| self.fault("snapshot", &error))
+    }
+
+    /// Copies the rows of an array of numbers, all of them, `width` numbers each.
+    pub(crate) fn copy(&mut self, array: &str, width: u64, to: &mut impl Write) -> Result<(), Failure> {
+        let frames = self.frames()?;
+        let copied = self.copy_rows(array, frames * width, to);
+        copied.map_err(|error| self.fault(array, &error))
+    }
+
+    fn copy_rows(&mut self, array: &str, numbers: u64, to: &mut impl Write) -> io::Result<()> {
+        let wrong = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
+        let (header, mut member) = self.header(array)?;
+        let own = header.shape().iter().try_fold(1u64, |product, &length| product.checked_mul(length));
+        if own != Some(numbers) || header.order() != Order::C || header.dtype().num_bytes() != Some(8) {
+            return Err(wrong(format!("it has the shape {:?}, and the run needs {numbers} numbers", header.shape())));
+        }
+        let copied = io::copy(&mut member, to)?;
+        if copied == 8 * numbers { Ok(()) } else { Err(wrong("it is cut".into())) }
+    }
+
     fn header(&mut self, array: &str) -> io::Result<(NpyHeader, impl Read)> {
         let mut member = self.archive.by_name(&format!("{array}.npy"))?;
         Ok((NpyHeader::from_reader(&mut member)?, member))
     }
 
     fn fault(&self, array: &str, error: &io::Error) -> Failure {
-        Failure::input(format!("cannot draw from `{}`: the array `{array}`: {error}", self.path.display()))
+        Failure::input(format!("cannot read `{}`: the array `{array}`: {error}", self.path.display()))
     }
 }

@@ -52,6 +52,12 @@ impl Workspace {
         self.watch = is_watched.then(|| TensionWatch::new(system));
     }
 
+    /// Whether the largest tension is recorded.
+    #[cfg(feature = "serde")]
+    pub(crate) fn watches_tension(&self) -> bool {
+        self.watch.is_some()
+    }
+
     /// Arrays for another system, or the same one changed, that go on recording.
     pub(crate) fn renewed(&self, system: &System) -> Workspace {
         let mut workspace = Workspace::new(system);

@@ -199,6 +199,7 @@ impl fmt::Display for RepeatedWarning {
 
 /// The warnings of a run, each told once.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarningLog {
     entries: Vec<RepeatedWarning>,
 }

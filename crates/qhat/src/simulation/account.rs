@@ -32,6 +32,7 @@ const ROUNDOFF: f64 = 64.0;
 
 /// The energy that a run has had and lost since its start.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct EnergyAccount {
     /// T + V less the work that came in, at the start [J].
     balance: f64,
@@ -49,6 +50,7 @@ pub(super) struct EnergyAccount {
 
 /// A change of the missing energy in one step.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Change {
     time: f64,
     energy: f64,

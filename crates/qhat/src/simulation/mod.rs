@@ -4,6 +4,8 @@ mod account;
 mod change;
 mod hand;
 mod look;
+#[cfg(feature = "serde")]
+mod saved;
 
 use crate::energy::Energy;
 use crate::error::StepError;

@@ -1,0 +1,42 @@
+//! Checkpoints: when the trajectory so far is written.
+
+use crate::arguments::Interval;
+use crate::failure::{Failure, warn};
+use std::time::{Duration, Instant};
+
+/// The interval between checkpoints, and what has passed of it.
+pub(super) struct Checkpoints {
+    interval: Interval,
+    last: Instant,
+    frames: usize,
+    has_failed: bool,
+}
+
+impl Checkpoints {
+    pub(super) fn new(interval: Interval) -> Self {
+        Checkpoints { interval, last: Instant::now(), frames: 0, has_failed: false }
+    }
+
+    /// Counts a frame; whether a checkpoint is due after it.
+    pub(super) fn are_due(&mut self) -> bool {
+        self.frames += 1;
+        let is_due = match self.interval {
+            Interval::Frames(frames) => self.frames >= frames,
+            Interval::Seconds(seconds) => {
+                self.last.elapsed() >= Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+            }
+        };
+        if is_due {
+            (self.frames, self.last) = (0, Instant::now());
+        }
+        is_due
+    }
+
+    /// Tells once that a checkpoint could not be written.
+    pub(super) fn failed(&mut self, failure: &Failure) {
+        if !self.has_failed {
+            warn(format!("no checkpoint: {}; the run goes on, and tries again", failure.message()));
+        }
+        self.has_failed = true;
+    }
+}
