@@ -11,14 +11,16 @@ pub(crate) use builder::check_force;
 pub use error::{BuildError, ParticleError};
 pub use particle::Particle;
 
-use crate::constraint::{Constraint, Formulation, Holds, Layout, Link, NamedConstraint, OnCurve, Rows, Softness};
+use crate::constraint::{
+    Constraint, Formulation, Holds, Layout, Link, NamedConstraint, OnCurve, Relation, Rows, Softness,
+};
 use crate::force::{Acts, Force};
 use crate::linalg::Component;
 use crate::point::Motion;
 use crate::settings::Feedback;
-use crate::space::{ConstraintId, Dimension, ParticleId};
+use crate::space::{ConstraintId, Dimension, ParticleId, in_dimension};
 use crate::state::State;
-use crate::structure::{ChainPlan, Contacts, FlatClique, MatrixPlan, MatrixStructure};
+use crate::structure::{ChainPlan, Contacts, FlatClique, Hold, MatrixPlan, MatrixStructure, flat_cliques, hold};
 
 /// Particles, constraints and forces; see [`System::builder`].
 #[derive(Clone, Debug)]
@@ -48,8 +50,12 @@ pub struct System {
     pub(crate) second_order: Vec<FlatClique>,
     /// The rods of these cliques, ascending.
     second_order_rods: Vec<ConstraintId>,
-    /// Their rows, ascending.
-    second_order_rows: Vec<usize>,
+    /// Those of them whose lengths follow from the other rows, ascending.
+    following_rods: Vec<ConstraintId>,
+    /// The rows of those, ascending.
+    following: Vec<u32>,
+    /// The number of constraints that the user gave; those behind them hold cliques, and are not shown.
+    given: usize,
     /// The constraints whose gradient may jump, by their places.
     pub(crate) jumpy: Vec<usize>,
     /// The beads on curves, by their places among the constraints.
@@ -79,6 +85,11 @@ impl System {
 
     /// m, the number of scalar constraint rows.
     pub fn row_count(&self) -> usize {
+        self.constraints.get(self.given).map_or(self.all_row_count(), |hidden| hidden.first_row)
+    }
+
+    /// The number of rows, with those that hold joints which rods hold only to second order.
+    pub(crate) fn all_row_count(&self) -> usize {
         self.row_names.len()
     }
 
@@ -89,12 +100,12 @@ impl System {
 
     /// Names of the rows, m: the constraint's name, with its component where it has several rows.
     pub fn row_names(&self) -> &[String] {
-        &self.row_names
+        &self.row_names[..self.row_count()]
     }
 
     /// The |C| that counts as a relative error of one, for each row \[C\]: r for a rod.
     pub fn row_scales(&self) -> &[f64] {
-        &self.row_scale
+        &self.row_scale[..self.row_count()]
     }
 
     /// m_i \[kg\], n.
@@ -117,7 +128,7 @@ impl System {
 
     /// The constraints, in the order of addition.
     pub fn constraints(&self) -> &[NamedConstraint] {
-        &self.constraints
+        &self.constraints[..self.given]
     }
 
     /// The links: constraints that act along the line of two particles (rods, ropes, struts), in the order of addition.
@@ -193,14 +204,16 @@ impl System {
         cliques: &[FlatClique],
         stand_in: &dyn Fn(&FlatClique) -> Vec<Constraint>,
     ) -> System {
-        let mut is_replaced = vec![false; self.constraints.len()];
+        let mut is_replaced = vec![false; self.given];
         cliques.iter().flat_map(|clique| &clique.rods).for_each(|rod| is_replaced[rod.0] = true);
         let kept = self.constraints.iter().zip(is_replaced).filter(|(_, is_replaced)| !is_replaced);
         let kept = kept.map(|(named, _)| (named.name.clone(), named.constraint.clone()));
         let others = cliques.iter().flat_map(stand_in).map(|constraint| (String::new(), constraint));
+        let constraints: Vec<_> = kept.chain(others).collect();
         let mut system = self.clone();
-        system.set_constraints(kept.chain(others).collect());
-        system.set_second_order(Vec::new());
+        system.following_rods.clear();
+        system.given = constraints.len();
+        system.set_constraints(constraints);
         system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
         system
     }
@@ -210,17 +223,54 @@ impl System {
         self.second_order_rods.binary_search(&ConstraintId(constraint)).is_ok()
     }
 
-    /// Whether a row belongs to such a rod.
-    pub(crate) fn is_second_order_row(&self, row: usize) -> bool {
-        self.second_order_rows.binary_search(&row).is_ok()
+    /// The rows of rods whose lengths follow from the rows that hold their cliques, ascending. They never act.
+    pub(crate) fn following(&self) -> &[u32] {
+        &self.following
     }
 
-    /// Takes the cliques that are held only to second order.
-    pub(crate) fn set_second_order(&mut self, cliques: Vec<FlatClique>) {
+    /// Whether a row is held at C = 0 by its own λ: it is rigid, and does not follow from others everywhere.
+    pub(crate) fn is_held(&self, row: usize) -> bool {
+        self.softness[row].is_rigid() && !self.is_following(row)
+    }
+
+    /// Whether a row is one of `following`.
+    pub(crate) fn is_following(&self, row: usize) -> bool {
+        !self.following.is_empty() && self.following.binary_search(&(row as u32)).is_ok()
+    }
+
+    /// Holds cliques, whose particles are at q \[m\], by other rows than their rods, which hold them only to second
+    /// order. Cliques that were held before are held by their rods alone again.
+    pub(crate) fn set_second_order(&mut self, cliques: Vec<FlatClique>, q: &[f64]) {
+        if cliques.is_empty() && self.second_order.is_empty() {
+            return;
+        }
+        self.constraints.truncate(self.given);
+        let Hold { relations, following } = in_dimension!(self.dimension, D => {
+            hold::<D>(&self.constraints, &self.inverse_mass, &cliques, q)
+        });
+        let given = self.constraints.iter().map(|named| (named.name.clone(), named.constraint.clone()));
+        let hidden = relations.into_iter().map(|relation| (self.name_of(&relation), relation.into()));
+        let constraints = given.chain(hidden).collect();
         self.second_order_rods = cliques.iter().flat_map(|clique| clique.rods.iter().copied()).collect();
         self.second_order_rods.sort_unstable();
-        self.second_order_rows = self.second_order_rods.iter().map(|id| self.constraints[id.0].first_row).collect();
-        self.second_order = cliques;
+        (self.second_order, self.following_rods) = (cliques, following);
+        self.set_constraints(constraints);
+        self.matrix = MatrixStructure::new(&self.layout, &self.inverse_mass, self.plan_matrix());
+    }
+
+    /// A name for a joint of a clique among the corners: no constraint of the user has it.
+    fn name_of(&self, relation: &Relation) -> String {
+        let names: Vec<&str> = relation.terms.iter().map(|(id, _)| self.particle_names[id.0].as_str()).collect();
+        match names[..] {
+            [joint, a, b] => format!("{joint} on the line of {a} and {b}"),
+            [joint, ref corners @ ..] => format!("{joint} in the plane of {}", corners.join(", ")),
+            [] => String::new(),
+        }
+    }
+
+    /// The flat cliques of the rods as they are given.
+    pub(crate) fn flat_cliques(&self, q: &[f64]) -> Vec<FlatClique> {
+        in_dimension!(self.dimension, D => flat_cliques::<D>(&self.constraints, &self.inverse_mass, q))
     }
 
     /// The names of the joints of the cliques that are held only to second order.
@@ -232,7 +282,7 @@ impl System {
     /// The mass [kg] of all particles that hang together with one through constraints.
     pub(crate) fn connected_mass(&self, particle: ParticleId) -> f64 {
         let mut neighbours = vec![Vec::new(); self.particle_count()];
-        for row in 0..self.row_count() {
+        for row in 0..self.all_row_count() {
             let particles = &self.layout.particle[self.layout.start[row]..self.layout.start[row + 1]];
             for pair in particles.windows(2) {
                 neighbours[pair[0].0].push(pair[1].0);
@@ -315,7 +365,8 @@ impl System {
         self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
     }
 
-    /// Writes the constraints, their rows, and the structure that follows from them.
+    /// Writes the constraints, of which those from `given` on hold cliques, their rows, and the structure that follows
+    /// from them.
     fn set_constraints(&mut self, constraints: Vec<(String, Constraint)>) {
         let dimension = self.dimension();
         self.constraints.clear();
@@ -327,6 +378,9 @@ impl System {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
                 1 => self.row_names.push(name.clone()),
+                rows if self.constraints.len() >= self.given => {
+                    self.row_names.extend(std::iter::repeat_n(name.clone(), rows));
+                }
                 rows if constraint.is_vector() => {
                     self.row_names.extend(["x", "y", "z"][..rows].iter().map(|axis| format!("{name}.{axis}")));
                 }
@@ -338,6 +392,7 @@ impl System {
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
+        self.following = self.following_rods.iter().map(|id| self.constraints[id.0].first_row as u32).collect();
         self.contacts = Contacts::new(&self.constraints, dimension);
         let constraints = self.constraints.iter().enumerate();
         self.jumpy =
