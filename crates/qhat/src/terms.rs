@@ -61,7 +61,8 @@ pub struct Terms {
     pub multiplier_is_unique: Vec<bool>,
     /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.
     pub is_open: Vec<bool>,
-    /// Rank of A; `None` where A is singular and too large for the rank to be counted.
+    /// Rank of A; where rods hold joints only to second order, that of the rows that hold them. `None` where A is
+    /// singular and too large for the rank to be counted.
     pub rank: Option<usize>,
     /// The warnings of this solve.
     pub warnings: Vec<Warning>,

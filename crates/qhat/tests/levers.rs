@@ -194,8 +194,9 @@ fn apart(a: &State, b: &State) -> f64 {
     off(a.positions(), b.positions()).max(off(a.velocities(), b.velocities()))
 }
 
-/// Under each integrator both take the same steps on the same surface C = 0. Adaptive methods are right to some 1e-9 a
-/// substep, and the difference grows with the motion; fixed steps differ by roundoff and by how far C is solved.
+/// Under each integrator both take the same steps on the same surface C = 0. Methods that are right to 1e-9 a substep
+/// differ by less than ten times that. RATTLE is of second order, and other lengths of its substeps show; 600 steps of
+/// `implicit` and `bdf2` gather what their Newton iterations leave, and those of `euler` how far C drifts.
 #[test]
 fn long_levers_and_plates_move_as_rigid_clusters_do() {
     for case in Case::all() {
@@ -210,8 +211,8 @@ fn long_levers_and_plates_move_as_rigid_clusters_do() {
                 }
             }
             let apart = apart(rods.state(), cluster.state());
-            eprintln!("{} under {integrator}: {apart:e}", case.name);
-            let allowed = if integrator == Integrator::Rattle { 1e-5 } else { 1e-6 };
+            let is_exact = integrator.is_adaptive() && integrator != Integrator::Rattle;
+            let allowed = if is_exact { 1e-8 } else { 1e-6 };
             assert!(apart < allowed, "{} under {integrator}: {apart:e}", case.name);
         }
     }
@@ -439,6 +440,39 @@ fn other_rods_break_as_beside_a_cluster() {
     }
     assert_eq!(broke, ["weak"]);
     assert_eq!(rods.system().broken_links(rods.state()), [3]);
+}
+
+/// The rod from end to end breaks, and then the brace of the joint between: what is left is a hinge, and a simulation
+/// that goes on from there has no lever.
+#[test]
+fn a_broken_rod_makes_no_lever() {
+    let mut builder = System::builder(Dimension::Two);
+    let joints = [[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let joint = |(k, at): (usize, [f64; 2])| {
+        let joint = Particle::at(format!("p{k}"), at);
+        builder.particle(if k == 0 { joint.fixed() } else { joint })
+    };
+    let ids: Vec<ParticleId> = joints.into_iter().enumerate().map(joint).collect();
+    for (a, b, breaks_at) in
+        [(0, 1, None), (1, 2, None), (0, 2, Some(1e-3)), (0, 3, None), (2, 3, None), (1, 3, Some(2.0))]
+    {
+        let [x, y] = [a, b].map(|k: usize| [joints[k][0], joints[k][1], 0.0]);
+        builder.constraint(format!("{a}-{b}"), Distance { breaks_at, ..Distance::new(ids[a], ids[b], distance(x, y)) });
+    }
+    builder.force(Gravity { acceleration: [0.0, -G, 0.0] });
+    let (system, state) = builder.build().unwrap();
+    let settings = settings(Integrator::Dop853);
+    let mut simulation = Simulation::new(system.clone(), state, settings).unwrap();
+    assert!(simulation.second_order().is_empty());
+    simulation.step().unwrap();
+    assert_eq!(simulation.system().broken_links(simulation.state()), [2, 5]);
+    let mut again = Simulation::new(system, simulation.state().clone(), settings).unwrap();
+    assert!(again.second_order().is_empty());
+    for _ in 0..20 {
+        simulation.step().unwrap();
+        again.step().unwrap();
+    }
+    assert_eq!(again.state().positions(), simulation.state().positions());
 }
 
 /// A joint 3e-6 beside the line, and rods whose lengths add up to 1e-10: the joint is put on the line.

@@ -72,7 +72,7 @@ impl Simulation {
     /// Gives the system rows for joints that its rods hold only to second order. They are found, and measured, at the
     /// consistent positions that are nearest to the start.
     fn hold_second_order(&mut self) -> Result<(), StepError> {
-        let flat = self.system.flat_cliques(&self.state.q);
+        let flat = self.system.flat_cliques(&self.state);
         if flat.is_empty() {
             return Ok(());
         }

@@ -268,9 +268,16 @@ impl System {
         }
     }
 
-    /// The flat cliques of the rods as they are given.
-    pub(crate) fn flat_cliques(&self, q: &[f64]) -> Vec<FlatClique> {
-        in_dimension!(self.dimension, D => flat_cliques::<D>(&self.constraints, &self.inverse_mass, q))
+    /// The flat cliques of the rods that are whole.
+    pub(crate) fn flat_cliques(&self, state: &State) -> Vec<FlatClique> {
+        let breakables = self.contacts.breakables.iter().zip(&state.modes.broken);
+        // Breakables are in the order of constraints.
+        let broken: Vec<usize> =
+            breakables.filter(|&(_, &broken)| broken).map(|(breakable, _)| breakable.constraint).collect();
+        let is_broken = |place: usize| broken.binary_search(&place).is_ok();
+        in_dimension!(self.dimension, D => {
+            flat_cliques::<D>(&self.constraints, &self.inverse_mass, &state.q, &is_broken)
+        })
     }
 
     /// The names of the joints of the cliques that are held only to second order.
