@@ -11,6 +11,9 @@ use crate::state::State;
 use crate::system::System;
 
 /// Every symbol of one evaluation. n particles in d dimensions, N = d·n, m rows, SI units; [`NOTATION`] lists them.
+///
+/// Where rods hold joints only to second order, rows of the engine's own take part in the equation and are not among
+/// the m. Q̂ and q̈ contain their forces, which Jᵀλ and A λ lack.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
