@@ -38,10 +38,6 @@ const ENERGIES: f64 = 100.0;
 /// The bound on C after the motion, of the extent: ten times the default tolerance of qhat, which is measured by the
 /// scale of each row instead.
 const RESIDUAL: f64 = 1e-9;
-/// The bound on C, q and q̇ where rods hold a joint to second order only. Three rods over a length L that are each off
-/// by the default tolerance, 1e-10 of their length, let the middle joint aside by w = √(δ L/2) = 1e-5 L, where δ =
-/// 2e-10 L; the rest is room for its velocity.
-const SECOND_ORDER: f64 = 3e-5;
 /// The perturbation of the velocities by which the growth of errors is measured: far above the errors of the reference,
 /// 1e-12, and small enough to grow in proportion.
 const PERTURBATION: f64 = 1e-7;
@@ -145,9 +141,7 @@ pub fn compare(framework: &Framework, reader: Reader<'_>) -> Verdict {
     if !verdict.findings.is_empty() {
         return verdict;
     }
-    if !framework.second_order {
-        forces(&reference, &mut simulation, &mut verdict);
-    }
+    forces(&reference, &mut simulation, &mut verdict);
     motion(framework, &reference, &mut simulation, &mut verdict);
     verdict
 }
@@ -211,10 +205,8 @@ fn motion(framework: &Framework, reference: &Reference, simulation: &mut Simulat
     if !run(simulation, framework.duration, verdict) {
         return;
     }
-    let least = if framework.second_order { SECOND_ORDER } else { 0.0 };
-    let allowed = (MOTION * growth).max(least);
-    let kept = RESIDUAL.max(least);
-    after(reference, simulation, &end, sizes, [kept, allowed], verdict);
+    let allowed = MOTION * growth;
+    after(reference, simulation, &end, sizes, allowed, verdict);
     let after = simulation.energy();
     let size = kinetic.max((energies[1][1] - energies[0][1]).abs()).max(1e-9);
     let kinds =
@@ -240,7 +232,7 @@ fn motion(framework: &Framework, reference: &Reference, simulation: &mut Simulat
         return;
     }
     if run(simulation, framework.duration, verdict) {
-        self::after(reference, simulation, &end, sizes, [kept, (allowed * growth).max(least)], verdict);
+        self::after(reference, simulation, &end, sizes, allowed * growth, verdict);
     }
 }
 
@@ -262,14 +254,14 @@ fn after(
     simulation: &Simulation,
     end: &Moment,
     [extent, speed]: [f64; 2],
-    [kept, allowed]: [f64; 2],
+    allowed: f64,
     verdict: &mut Verdict,
 ) {
     let integrator = simulation.settings().integrator;
     let state = simulation.state();
     let residuals = reference.residuals(state.positions(), state.time());
     let zeros = vec![0.0; residuals.len()];
-    verdict.compare(&format!("C at the end with {integrator}"), &residuals, &zeros, extent, kept);
+    verdict.compare(&format!("C at the end with {integrator}"), &residuals, &zeros, extent, RESIDUAL);
     verdict.compare(&format!("q at the end with {integrator}"), state.positions(), &end.q, extent, allowed);
     verdict.compare(&format!("q̇ at the end with {integrator}"), state.velocities(), &end.qd, speed, allowed);
 }

@@ -19,8 +19,6 @@ pub struct Framework {
     pub conditions: Vec<Condition>,
     /// The rows of the reference, where they are not those of the conditions: see `generate/singular.rs`.
     pub instead: Option<Vec<Formula>>,
-    /// Whether rods hold a joint to second order only, so that the equation does not determine its acceleration.
-    pub second_order: bool,
     /// The forces beside gravity and drag.
     pub pushes: Vec<Push>,
     /// The acceleration of gravity [m/s²].

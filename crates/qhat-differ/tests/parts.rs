@@ -22,7 +22,6 @@ fn bob(conditions: Vec<Condition>, pushes: Vec<Push>, velocity: [f64; 3]) -> Fra
         ],
         conditions,
         instead: None,
-        second_order: false,
         pushes,
         gravity: [0.0; 3],
         drag: 0.0,

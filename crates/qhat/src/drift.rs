@@ -8,11 +8,11 @@ use crate::system::System;
 /// The residuals of one motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
-    /// max |C| over the rigid rows.
+    /// max |C| over the rigid rows that the user gave.
     pub(crate) residual: f64,
     /// max |Ċ|.
     pub(crate) residual_rate: f64,
-    /// max |C| over the row's own scale, and the row; NaN counts as infinite.
+    /// max |C| over the row's own scale, of the rows that are held, and the row; NaN counts as infinite.
     pub(crate) relative: f64,
     pub(crate) worst_row: usize,
     /// max ||d| − r|/r over the rigid rods.
@@ -23,10 +23,16 @@ pub(crate) struct Drift {
 /// active.
 pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bool], q: &[f64]) -> Drift {
     let mut drift = Drift::default();
+    let given = system.row_count();
     let rigid = |row: &usize| system.softness[*row].is_rigid();
     for row in (0..rows.C.len()).filter(rigid) {
-        drift.residual = larger(drift.residual, rows.C[row].abs());
-        drift.residual_rate = larger(drift.residual_rate, rows.Cd[row].abs());
+        if row < given {
+            drift.residual = larger(drift.residual, rows.C[row].abs());
+            drift.residual_rate = larger(drift.residual_rate, rows.Cd[row].abs());
+        }
+        if !system.is_held(row) {
+            continue;
+        }
         let relative = rows.C[row].abs() / system.row_scale[row];
         let relative = if relative.is_nan() { f64::INFINITY } else { relative };
         if relative > drift.relative {
@@ -45,11 +51,11 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
     drift
 }
 
-/// The rigid row with the largest |C| over its scale, and that number; NaN counts as infinite.
+/// The row that is held with the largest |C| over its scale, and that number; NaN counts as infinite.
 pub(crate) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
     let mut worst = (0, 0.0);
     for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
-        if !system.softness[row].is_rigid() {
+        if !system.is_held(row) {
             continue;
         }
         let relative = residual.abs() / scale;

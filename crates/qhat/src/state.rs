@@ -47,6 +47,8 @@ impl Work {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rank {
+    /// The number of rows of the system in which they were found; of another system the rank says nothing.
+    pub(crate) rows: usize,
     /// For each row whether it was inactive; empty in a system without contacts.
     pub(crate) inactive: Vec<bool>,
     /// Rows that follow from others, ascending.
@@ -133,6 +135,12 @@ impl State {
     /// q̇ [m/s], d·n numbers, particle after particle.
     pub fn velocities(&self) -> &[f64] {
         &self.qd
+    }
+
+    /// The rank as it was found in a system of so many rows. Rows are added to a system where rods hold joints only to
+    /// second order.
+    pub(crate) fn rank_in(&self, rows: usize) -> Option<&Arc<Rank>> {
+        self.rank.as_ref().filter(|rank| rank.rows == rows)
     }
 
     /// t \[s\].

@@ -11,6 +11,9 @@ use crate::state::State;
 use crate::system::System;
 
 /// Every symbol of one evaluation. n particles in d dimensions, N = d·n, m rows, SI units; [`NOTATION`] lists them.
+///
+/// Where rods hold joints only to second order, rows of the engine's own take part in the equation and are not among
+/// the m. Q̂ and q̈ contain their forces, which Jᵀλ and A λ lack.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -61,7 +64,8 @@ pub struct Terms {
     pub multiplier_is_unique: Vec<bool>,
     /// Whether a row is inactive: of an open contact, of friction unless the contact sticks, of a broken constraint; m.
     pub is_open: Vec<bool>,
-    /// Rank of A; `None` where A is singular and too large for the rank to be counted.
+    /// Rank of A; where rods hold joints only to second order, that of the rows that hold them. `None` where A is
+    /// singular and too large for the rank to be counted.
     pub rank: Option<usize>,
     /// The warnings of this solve.
     pub warnings: Vec<Warning>,
@@ -143,35 +147,39 @@ impl Workspace {
     pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
         let tension = self.tension(system, state, feedback);
         let terms = collect(system, state, self.equation(), tension);
-        let (links, rows) = (self.tension_is_unique(system), self.multiplier_is_unique().to_vec());
+        let links = self.tension_is_unique(system);
+        let rows = self.multiplier_is_unique()[..system.row_count()].to_vec();
         Terms { tension_is_unique: links, multiplier_is_unique: rows, ..terms }
     }
 }
 
-/// The symbols of an equation that was solved at a state, with the tensions that belong to it.
+/// The symbols of an equation that was solved at a state, with the tensions that belong to it. Rows behind those that
+/// the user gave are left out.
 fn collect(system: &System, state: &State, equation: &Equation, tension: Vec<f64>) -> Terms {
-    let rank = Some(equation.solver.rank(&system.matrix));
+    let (rank, m) = (Some(equation.solver.rank(&system.matrix)), system.row_count());
+    let given = |all: &[f64]| all[..m].to_vec();
     let warnings = equation.warnings(system);
+    let jacobian = equation.rows.J.first_rows(m);
     let constraint_matrix =
-        in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&equation.rows.J, &system.inverse_mass));
-    let is_open = (0..system.row_count()).map(|row| equation.is_inactive(row)).collect();
+        in_dimension!(system.dimension, D => system.matrix.in_given_order::<D>(&jacobian, &system.inverse_mass));
+    let is_open = (0..m).map(|row| equation.is_inactive(row)).collect();
     Terms {
         time: state.t,
         positions: state.q.clone(),
         velocities: state.qd.clone(),
         inverse_masses: system.inverse_mass.clone(),
         applied_forces: equation.Q.clone(),
-        residual: equation.rows.C.clone(),
-        residual_rate: equation.rows.Cd.clone(),
-        jacobian: equation.rows.J.clone(),
-        acceleration_bias: equation.rows.gamma.clone(),
+        residual: given(&equation.rows.C),
+        residual_rate: given(&equation.rows.Cd),
+        jacobian,
+        acceleration_bias: given(&equation.rows.gamma),
         constraint_matrix,
-        rhs_bias: equation.b.bias.clone(),
-        rhs_forces: equation.b.forces.clone(),
-        rhs_stiffness: equation.b.stiffness.clone(),
-        rhs_damping: equation.b.damping.clone(),
-        right_hand_side: equation.b.sum.clone(),
-        multipliers: equation.lambda.clone(),
+        rhs_bias: given(&equation.b.bias),
+        rhs_forces: given(&equation.b.forces),
+        rhs_stiffness: given(&equation.b.stiffness),
+        rhs_damping: given(&equation.b.damping),
+        right_hand_side: given(&equation.b.sum),
+        multipliers: given(&equation.lambda),
         constraint_forces: equation.Q_hat.clone(),
         accelerations: equation.qdd.clone(),
         tension,

@@ -30,6 +30,7 @@ mod glossary;
 mod identities;
 mod kinds;
 mod layers;
+mod levers;
 mod limits;
 mod method_example;
 mod one_step_by_hand;

@@ -158,7 +158,7 @@ impl Findings {
         let open_rows = on_free().filter(|&row| terms.is_open[row]).count();
         let rows = on_free().count() - open_rows;
         // Where the constraints cannot hold, the system has no configuration whose rank could be counted.
-        // Where rods hold only to second order, roundoff would decide about the rank of A.
+        // Where rods hold only to second order, the rank of the terms is that of the rows that hold instead.
         let rank = match freedom {
             Some(freedom) => Some(coordinates - freedom.here),
             None => terms.rank.filter(|_| feasible),

@@ -58,7 +58,6 @@ fn attempt_at(seed: u64, attempt: u64) -> Option<Framework> {
         particles: Vec::new(),
         conditions: Vec::new(),
         instead: None,
-        second_order: false,
         pushes: Vec::new(),
         gravity: [0.0; 3],
         drag: 0.0,

@@ -47,5 +47,4 @@ pub(super) fn three_in_line(random: &mut Random, framework: &mut Framework) {
         rows.push(b - (number(1.0 - part) * a + number(part) * c));
     }
     framework.instead = Some(rows);
-    framework.second_order = true;
 }

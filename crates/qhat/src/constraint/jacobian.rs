@@ -34,6 +34,14 @@ impl Jacobian {
         entries.map(|e| (self.layout.particle[e], &self.blocks[e * self.dimension..][..self.dimension]))
     }
 
+    /// The first m rows alone.
+    pub(crate) fn first_rows(&self, m: usize) -> Self {
+        let entries = self.layout.start[m];
+        let layout =
+            Layout { start: self.layout.start[..=m].to_vec(), particle: self.layout.particle[..entries].to_vec() };
+        Jacobian { layout, blocks: self.blocks[..entries * self.dimension].to_vec(), ..*self }
+    }
+
     /// Number of rows, m.
     pub fn row_count(&self) -> usize {
         self.layout.row_count()

@@ -145,7 +145,7 @@ fn solve_refined<const D: usize>(equation: &mut Equation, system: &System) {
     equation.write_W_JT_lambda_F::<D>(system);
     let rest = |equation: &Equation| -> Vec<f64> {
         let is_left_out = |row: usize| equation.is_inactive(row) || equation.is_left_out(row) || !system.is_rigid(row);
-        (0..system.row_count()).map(|row| if is_left_out(row) { 0.0 } else { -w::<D>(equation, row) }).collect()
+        (0..system.all_row_count()).map(|row| if is_left_out(row) { 0.0 } else { -w::<D>(equation, row) }).collect()
     };
     let before = rest(equation);
     if largest(&before) <= REFINED * largest(&equation.b.sum) {

@@ -126,9 +126,9 @@ impl EventFunctions<'_> {
         for (breakable, &broken) in system.contacts.breakables.iter().zip(&modes.broken) {
             let carried = breakable.rows.clone().map(|row| lambda[row].abs()).fold(0.0, larger);
             let reserve = (breakable.limit - carried) / (NO_FORCE * breakable.limit);
-            // A tension that is noise breaks nothing.
-            let is_noise = system.is_second_order(breakable.constraint);
-            let cannot_break = broken || is_noise || breakable.limit.is_infinite();
+            // A tension without a meaning breaks nothing.
+            let is_meant = !system.is_second_order(breakable.constraint);
+            let cannot_break = broken || !is_meant || breakable.limit.is_infinite();
             event_functions.push(if cannot_break { f64::INFINITY } else { reserve });
         }
     }

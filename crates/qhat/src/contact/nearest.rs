@@ -72,7 +72,7 @@ impl NearestStart<'_> {
         self.add_violated(state, &mut touching);
         q.copy_from_slice(written);
         let mut towards = vec![0.0; q.len()];
-        let mut J_way = vec![0.0; system.row_count()];
+        let mut J_way = vec![0.0; system.all_row_count()];
         for _ in 0..ROUNDS {
             self.equation.constrain_all(system, Motion::<D> { q, qd, t });
             let found = self.add_violated(state, &mut touching);

@@ -207,7 +207,9 @@ impl<const D: usize> EventResolution<'_, D> {
     /// The link whose impulse is farthest above its strength, with the impulse [N·s].
     fn broken_by_impulse(&self, modes: &Modes) -> Option<(usize, f64)> {
         let breakables = self.system.contacts.breakables.iter().zip(&modes.broken).enumerate();
-        let whole = breakables.filter(|(_, (_, broken))| !**broken);
+        // Rods whose tensions have no meaning do not break.
+        let is_meant = |constraint: usize| !self.system.is_second_order(constraint);
+        let whole = breakables.filter(|(_, (breakable, broken))| !**broken && is_meant(breakable.constraint));
         let carried = whole.map(|(number, (breakable, _))| {
             let impulses = breakable.rows.clone().map(|row| self.equation.lambda[row].abs());
             (number, impulses.fold(0.0, larger), breakable.impulse_limit)

@@ -210,7 +210,7 @@ fn a_foot_that_follows_from_others_opens_where_they_lift_it() {
     for (middle, expected) in [(0.5, [true, true, false]), (1.5, [false, false, true])] {
         for start in 0..8 {
             let mut equation = at::<2>(&system, &state);
-            equation.b.sum = vec![0.0; system.row_count()];
+            equation.b.sum = vec![0.0; system.all_row_count()];
             for (contact, b) in system.contacts.list.iter().zip([1.0, 1.0, middle]) {
                 equation.b.sum[contact.normal] = b;
             }

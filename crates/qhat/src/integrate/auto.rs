@@ -140,6 +140,6 @@ fn wanted_substeps<const D: usize>(system: &System, state: &State, length: f64) 
 /// The number of substeps that the work of a frame allows; 0 where it allows none.
 fn most_substeps(system: &System, settings: &Settings) -> usize {
     let a_row = if system.chains.is_some() { 1 } else { GENERAL };
-    let substep = dop853::DOP853.stages() * a_row * system.row_count().max(1);
+    let substep = dop853::DOP853.stages() * a_row * system.all_row_count().max(1);
     (settings.frame_work / substep).min(settings.max_substeps)
 }

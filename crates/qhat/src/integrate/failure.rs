@@ -141,7 +141,7 @@ pub(super) fn undecided<const D: usize>(
     if system.constraints.is_empty() {
         return None;
     }
-    let (m, soon) = (system.row_count(), later::<D>(system, state));
+    let (m, soon) = (system.all_row_count(), later::<D>(system, state));
     if soon.Ct.iter().all(|&Ct| Ct == 0.0) {
         return None;
     }
@@ -176,8 +176,8 @@ pub(super) fn undecided<const D: usize>(
 /// r = e − A⁻¹ J W Jᵀ e with Jᵀ r = 0, from e, which only rows that follow from others miss.
 fn without_force<const D: usize>(system: &System, workspace: &mut Workspace, mut missed: Vec<f64>) -> Vec<f64> {
     let (equation, W) = (&mut workspace.equation, &system.inverse_mass);
-    let (mut moved, mut rates) = (vec![0.0; system.coordinate_count()], vec![0.0; system.row_count()]);
-    let mut held = vec![0.0; system.row_count()];
+    let (mut moved, mut rates) = (vec![0.0; system.coordinate_count()], vec![0.0; system.all_row_count()]);
+    let mut held = vec![0.0; system.all_row_count()];
     equation.rows.J.add_impulse::<D>(W, &missed, 1.0, &mut moved);
     equation.rows.J.multiply::<D>(&moved, &mut rates);
     equation.solver.solve(&system.matrix, &rates, &mut held);
@@ -193,7 +193,7 @@ fn free_velocity<const D: usize>(system: &System, workspace: &mut Workspace, see
         *v = system.extent * (((k + 1) * seed) as f64 * 0.618_033_988_749_895).fract() - 0.5 * system.extent;
     }
     let equation = &mut workspace.equation;
-    let (mut rates, mut nu) = (vec![0.0; system.row_count()], vec![0.0; system.row_count()]);
+    let (mut rates, mut nu) = (vec![0.0; system.all_row_count()], vec![0.0; system.all_row_count()]);
     equation.rows.J.multiply::<D>(&v, &mut rates);
     equation.solver.solve(&system.matrix, &rates, &mut nu);
     equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, &mut v);
@@ -215,7 +215,7 @@ fn drive_near(system: &System, rows: &Rows, row: usize) -> Option<String> {
     }
     let layout = &system.layout;
     let of = |row: usize| &layout.particle[layout.start[row]..layout.start[row + 1]];
-    let mut is_reached = vec![false; system.row_count()];
+    let mut is_reached = vec![false; system.all_row_count()];
     let mut frontier = vec![row];
     *is_reached.get_mut(row)? = true;
     while !frontier.is_empty() {

@@ -72,6 +72,9 @@ pub(crate) fn step_for(
     settings.check()?;
     check_finds_events(system, settings)?;
     check_length(length)?;
+    if state.rank_in(system.all_row_count()).is_none() {
+        state.rank = None;
+    }
     workspace.begin_watch(system, settings);
     let frame = &mut Frame { system, settings, workspace, length };
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
@@ -177,6 +180,18 @@ pub fn project(
             close::<D>(system, state, settings, &mut workspace.equation);
         }
         Ok(projection)
+    })
+}
+
+/// The nearest state with C = 0 and Ċ = 0, for what is measured there: a motion need not be possible from it.
+///
+/// # Errors
+/// As [`project`], where no such positions or velocities are found.
+pub(crate) fn consistent(system: &System, state: &State, settings: &Settings) -> Result<State, StepError> {
+    let (mut state, mut workspace) = (state.clone(), Workspace::new(system));
+    in_dimension!(system.dimension, D => {
+        projection::project::<D>(system, &mut state, settings, &mut workspace)?;
+        Ok(state)
     })
 }
 

@@ -102,10 +102,10 @@ struct Projector<'a, const D: usize> {
 impl<const D: usize> Projector<'_, D> {
     /// Brings q onto C = 0; returns max |C| before and the number of iterations.
     fn positions(&mut self) -> Result<(f64, usize), StepError> {
-        let (system, m) = (self.system, self.system.row_count());
+        let system = self.system;
         self.constrain();
         let start = self.q.to_vec();
-        let rigid = (0..m).filter(|&row| system.softness[row].is_rigid());
+        let rigid = (0..system.row_count()).filter(|&row| system.softness[row].is_rigid());
         let before = rigid.fold(0.0, |most, row| larger(most, self.equation.rows.C[row].abs()));
         for step in [Step::Independent, Step::LeastSquares] {
             self.q.copy_from_slice(&start);
@@ -121,7 +121,7 @@ impl<const D: usize> Projector<'_, D> {
     /// came to.
     fn newton(&mut self, step: Step) -> Option<usize> {
         let system = self.system;
-        let mut delta = vec![0.0; system.row_count()];
+        let mut delta = vec![0.0; system.all_row_count()];
         let (mut start, mut has_asked) = (self.q.to_vec(), false);
         for iteration in 0..MAX_ITERATIONS {
             let off = self.off();

@@ -64,7 +64,7 @@ pub(super) struct Scratch {
 
 impl Scratch {
     pub(super) fn new(system: &System) -> Self {
-        let (coordinates, m) = (system.coordinate_count(), system.row_count());
+        let (coordinates, m) = (system.coordinate_count(), system.all_row_count());
         Scratch {
             J: system.empty_rows().J,
             mu: vec![0.0; m],

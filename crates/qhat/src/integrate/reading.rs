@@ -76,7 +76,7 @@ impl Reading {
         if !equation.solver.dependent().is_empty() && feedback.diagonal_drag == 0.0 {
             self.spread::<D>(system, t, equation);
         } else {
-            self.share.set_unique(system.row_count());
+            self.share.set_unique(system.all_row_count());
         }
     }
 
@@ -89,9 +89,9 @@ impl Reading {
         }
         let inert = &system.matrix.inert;
         acts.clear();
-        acts.extend((0..system.row_count()).map(|row| !inert[row] && !equation.is_inactive(row)));
+        acts.extend((0..system.all_row_count()).map(|row| !inert[row] && !equation.is_inactive(row)));
         is_one_sided.clear();
-        is_one_sided.resize(system.row_count(), false);
+        is_one_sided.resize(system.all_row_count(), false);
         sticking.clear();
         for Contact { normal, tangents, friction, .. } in &system.contacts.list {
             is_one_sided[*normal] = true;

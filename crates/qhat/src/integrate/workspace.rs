@@ -40,7 +40,7 @@ impl Workspace {
             equation: Equation::new(system),
             q: vec![0.0; coordinates],
             qd: vec![0.0; coordinates],
-            delta: vec![0.0; system.row_count()],
+            delta: vec![0.0; system.all_row_count()],
             stages: Stages::default(),
             chains: None,
             rattle: rattle::Scratch::new(system),
@@ -59,8 +59,9 @@ impl Workspace {
     /// factor of A without other rows is forgotten.
     pub(crate) fn set_modes(&mut self, system: &System, state: &State) {
         in_dimension!(system.dimension, D => self.equation.place_feet::<D>(system, state));
-        if state.rank.is_none() || state.rank != self.equation.rank {
-            self.equation.rank.clone_from(&state.rank);
+        let rank = state.rank_in(system.all_row_count());
+        if rank.is_none() || rank != self.equation.rank.as_ref() {
+            self.equation.rank = rank.cloned();
             self.equation.solver.memory.forget();
         }
         if !system.contacts.is_empty() {

@@ -130,18 +130,14 @@ impl Equation {
         matrix.assemble::<D>(&self.rows.J, W, &mut self.A);
         if epsilon > 0.0 {
             // A + ε I is positive definite; only roundoff can spoil it.
-            let smallest = self.solver.factor(matrix, &self.A, epsilon, &self.inactive, &[]);
+            let smallest = self.solver.factor(matrix, &self.A, epsilon, &self.inactive, system.following());
             if smallest.is_nan() || smallest <= 0.0 {
-                self.solver.factor_perturbed(matrix, &self.A, epsilon, &self.inactive, &[]);
+                self.solver.factor_perturbed(matrix, &self.A, epsilon, &self.inactive, system.following());
             }
             return;
         }
         let rank = self.rank.take().filter(|rank| rank.inactive == self.inactive);
-        if !system.second_order.is_empty() {
-            self.factor_second_order::<D>(system, rank);
-            return;
-        }
-        let known: &[u32] = rank.as_ref().map_or(&[], |rank| &rank.dependent);
+        let known: &[u32] = rank.as_ref().map_or(system.following(), |rank| &rank.dependent);
         let smallest = self.solver.factor(matrix, &self.A, 0.0, &self.inactive, known);
         let expected = rank.as_ref().map_or(INDEPENDENT, |rank| DOUBTFUL * rank.least);
         // A pivot that is not a number is not above either.
@@ -153,36 +149,21 @@ impl Equation {
         }
         self.rank = rank.or_else(|| {
             let (inactive, dependent) = (self.inactive.clone(), self.solver.dependent().to_vec());
-            Some(Arc::new(Rank { inactive, dependent, least: self.solver.smallest_pivot().min(1.0), sine: 1.0 }))
+            let (rows, least) = (system.all_row_count(), self.solver.smallest_pivot().min(1.0));
+            Some(Arc::new(Rank { rows, inactive, dependent, least, sine: 1.0 }))
         });
-    }
-
-    /// The same where rods hold joints only to second order. They depend on each other, and none of them is left out:
-    /// each holds the joints across the line, as soon as they are off it.
-    fn factor_second_order<const D: usize>(&mut self, system: &System, rank: Option<Arc<Rank>>) {
-        let rank = rank.unwrap_or_else(|| {
-            let mut dependent = self.dependent_rows::<D>(system);
-            dependent.retain(|&row| !system.is_second_order_row(row as usize));
-            system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-            Arc::new(Rank { inactive: self.inactive.clone(), dependent, least: 1.0, sine: 1.0 })
-        });
-        self.solver.factor_second_order(&system.matrix, &self.A, &self.inactive, &rank.dependent);
-        self.rank = Some(rank);
     }
 
     /// The factor of A + δ I in scaled rows, every active row among them: Jᵀλ then comes nearest to the right-hand side
     /// where rows contradict each other.
     pub(crate) fn factor_least_squares<const D: usize>(&mut self, system: &System) {
         system.matrix.assemble::<D>(&self.rows.J, &system.inverse_mass, &mut self.A);
-        self.solver.factor_shifted(&system.matrix, &self.A, &self.inactive);
+        self.solver.factor_shifted(&system.matrix, &self.A, &self.inactive, system.following());
     }
 
     /// The rows that follow from others, for the next frame, with the smallest pivot and sine of any position so far.
     pub(crate) fn rank_to_keep<const D: usize>(&mut self, system: &System) -> Option<Arc<Rank>> {
         let rank = self.rank.clone()?;
-        if !system.second_order.is_empty() {
-            return Some(rank);
-        }
         let smallest = self.solver.smallest_pivot().min(1.0);
         let is_known = rank.sine < 1.0 && smallest <= GROWN * rank.least;
         if is_known || self.solver.dependent() != rank.dependent {
@@ -197,10 +178,6 @@ impl Equation {
     /// masses may be the reason, and the pivots of J Jᵀ answer.
     pub(crate) fn margin<const D: usize>(&mut self, system: &System) -> Option<f64> {
         let rank = self.rank.clone()?;
-        if !system.second_order.is_empty() {
-            // Every position is singular.
-            return Some(1.0);
-        }
         if self.solver.dependent() != rank.dependent {
             return None;
         }

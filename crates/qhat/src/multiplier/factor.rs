@@ -28,10 +28,6 @@ const SMALL_WITHOUT_HUB: f64 = 1e-3;
 /// δ of a least-squares solution, far below the eigenvalues of rows that agree.
 const SHIFT: f64 = 1e-8;
 
-/// δ where rods hold joints only to second order: they then hold them across the line from 1e-6 of their lengths on,
-/// smoothly, and below that not at all.
-const SECOND_ORDER: f64 = 1e-12;
-
 /// Relative residual above which a solution is refined. Under a load of a billion beads x is a billion times b, and the
 /// rounding of x alone gives a residual of 1e-7.
 const ACCEPTED_RESIDUAL: f64 = 1e-6;
@@ -129,31 +125,15 @@ impl MultiplierSolver {
         (self.is_perturbed, self.is_refined) = (!met.is_empty() || is_poor, true);
     }
 
-    /// Factors M + δ I over all active rows.
-    pub(super) fn factor_shifted(&mut self, matrix: &MatrixStructure, A: &[f64], inactive: &[bool]) {
-        self.shift(matrix, A, inactive, &[], SHIFT);
-        // A solution of a shifted matrix does not satisfy the equation, and is not to be refined.
-        self.is_refined = false;
-    }
-
-    /// Factors M + δ I with the δ of rods that hold only to second order.
-    pub(super) fn factor_second_order(
-        &mut self,
-        matrix: &MatrixStructure,
-        A: &[f64],
-        inactive: &[bool],
-        dependent: &[u32],
-    ) {
-        self.shift(matrix, A, inactive, dependent, SECOND_ORDER);
-        (self.is_perturbed, self.is_refined) = (false, true);
-    }
-
-    fn shift(&mut self, matrix: &MatrixStructure, A: &[f64], inactive: &[bool], dependent: &[u32], shift: f64) {
+    /// Factors M + δ I over all active rows but some.
+    pub(super) fn factor_shifted(&mut self, matrix: &MatrixStructure, A: &[f64], inactive: &[bool], dependent: &[u32]) {
         self.scale_rows(matrix, A, 0.0, inactive, dependent);
         self.factorizations += 1;
         let [below, instead] = TAKEN;
-        let mut small = SmallPivots { shift, below, instead: Some(instead), met: &mut Vec::new() };
+        let mut small = SmallPivots { shift: SHIFT, below, instead: Some(instead), met: &mut Vec::new() };
         self.smallest = self.factor.factor_with(&matrix.pattern, &self.scaled, &mut small);
+        // A solution of a shifted matrix does not satisfy the equation, and is not to be refined.
+        self.is_refined = false;
     }
 
     /// The residual of the last solution, relative to its right-hand side.

@@ -43,7 +43,7 @@ impl Equation {
     /// The rows that follow from other active rows at the J at hand, ascending. The factor and A at hand are lost.
     pub(super) fn dependent_rows<const D: usize>(&mut self, system: &System) -> Vec<u32> {
         let free = self.assemble_without_masses::<D>(system);
-        self.solver.scale_rows(&system.matrix, &self.A, 0.0, &self.inactive, &[]);
+        self.solver.scale_rows(&system.matrix, &self.A, 0.0, &self.inactive, system.following());
         let coordinates = system.coordinate_count();
         let mut waits = WAITS;
         let (sure, waiting) = loop {
@@ -68,7 +68,8 @@ impl Equation {
             }
         }
         let places = sure.iter().map(|&(place, _)| place).chain(left.iter().map(|&(place, _)| place));
-        let mut dependent: Vec<u32> = places.map(|place| system.matrix.order[place]).collect();
+        let found = places.map(|place| system.matrix.order[place]);
+        let mut dependent: Vec<u32> = found.chain(system.following().iter().copied()).collect();
         dependent.sort_unstable();
         dependent
     }

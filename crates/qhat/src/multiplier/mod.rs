@@ -88,7 +88,7 @@ struct Balance {
 
 impl Equation {
     pub(crate) fn new(system: &System) -> Self {
-        let (coordinates, m) = (system.coordinate_count(), system.row_count());
+        let (coordinates, m) = (system.coordinate_count(), system.all_row_count());
         Equation {
             Q: vec![0.0; coordinates],
             WQ: vec![0.0; coordinates],
@@ -126,7 +126,7 @@ impl Equation {
         if !system.second_order.is_empty() {
             warnings.push(Warning::SecondOrder { joints: system.names_of_cliques() });
         }
-        if !self.solver.dependent().is_empty() {
+        if self.solver.dependent().len() > system.following().len() {
             warnings.push(Warning::Singular);
         }
         warnings

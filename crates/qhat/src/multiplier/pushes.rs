@@ -39,7 +39,7 @@ impl Equation {
         self.lambda.fill(0.0);
         self.lambda[row] = 1.0;
         self.write_W_JT_lambda::<D>(system);
-        let target: Vec<f64> = (0..system.row_count()).map(|row| -self.J_W_JT_lambda::<D>(row)).collect();
+        let target: Vec<f64> = (0..system.all_row_count()).map(|row| -self.J_W_JT_lambda::<D>(row)).collect();
         self.solver.solve(&system.matrix, &target, &mut self.lambda);
         self.lambda[row] += 1.0;
     }

@@ -14,21 +14,20 @@
 //!
 //! J has the rods of a line as a tree and the rods of a plane as a truss in the plane, so that it does not depend on
 //! the height that is left. Where v moves the joints of a clique as a rigid body does, to roundoff, their rods only
-//! repeat each other. Otherwise second order holds them. With every such clique held by the rows of a rigid cluster
-//! (`cluster.rs`), the rank is that of the mechanism at positions near by.
+//! repeat each other. Otherwise second order holds them, and the system is given the rows of `structure/hold.rs`, which
+//! hold them to first order (`System::set_second_order`). The rank is then that of the mechanism at positions near by.
 //!
 //! Source: Connelly and Whiteley, Second-order rigidity and prestress stability for tensegrity frameworks, SIAM J.
 //! Discrete Math. 9 (1996).
 
 use super::Equation;
-use crate::cluster::{RigidCluster, rigid_cluster, rigid_rods};
-use crate::constraint::{Constraint, Distance, Relation};
+use crate::cluster::rigid_rods;
+use crate::constraint::{Constraint, Distance};
 use crate::modes::Modes;
-use crate::number::raised;
-use crate::point::{Motion, block, dot, minus, norm, scaled};
+use crate::point::{Motion, block, minus, norm};
 use crate::space::{Dimension, ParticleId, in_dimension};
 use crate::state::State;
-use crate::structure::{Classes, FlatClique, flat_cliques};
+use crate::structure::{Classes, Flat, FlatClique, relations};
 use crate::system::System;
 
 /// |Σ w v| relative to the fastest particle above which v bends a clique. A solve for forces is right to ten digits and
@@ -45,15 +44,13 @@ pub struct Freedom {
     pub nearby: usize,
 }
 
-/// The cliques whose joints rods hold only to second order at a state that satisfies the constraints.
-pub(crate) fn second_order(system: &System, state: &State) -> Vec<FlatClique> {
-    in_dimension!(system.dimension, D => {
-        let cliques = flat_cliques::<D>(&system.constraints, &system.inverse_mass, &state.q);
-        if cliques.is_empty() { cliques } else { bent::<D>(system, state, cliques) }
-    })
+/// Of the flat cliques of a system, those whose joints rods hold only to second order, at a state that satisfies the
+/// constraints.
+pub(crate) fn second_order(system: &System, state: &State, cliques: Vec<FlatClique>) -> Vec<FlatClique> {
+    in_dimension!(system.dimension, D => bent::<D>(system, state, cliques))
 }
 
-/// The degrees of freedom at a state; `None` if no rods hold to second order only, or if the rank is not counted.
+/// The degrees of freedom at a state; `None` if no rods hold to second order only.
 pub(crate) fn freedom(system: &System, state: &State) -> Option<Freedom> {
     let cliques = &system.second_order;
     if cliques.is_empty() {
@@ -61,14 +58,10 @@ pub(crate) fn freedom(system: &System, state: &State) -> Option<Freedom> {
     }
     let coordinates = system.dimension() * system.inverse_mass.iter().filter(|&&w| w > 0.0).count();
     in_dimension!(system.dimension, D => {
-        let left = |stand_in: &dyn Fn(&FlatClique) -> Vec<Constraint>| {
-            let other = system.with_cliques(cliques, stand_in);
-            let equation = factored::<D>(&other, state);
-            Some(coordinates.saturating_sub(equation.solver.rank(&other.matrix)))
-        };
-        let here = left(&|clique| at_first_order::<D>(system, clique, &state.q))?;
-        let nearby = left(&|clique| as_rigid::<D>(clique, &state.q))?;
-        Some(Freedom { here, nearby })
+        let first_order = system.with_cliques(cliques, &|clique| at_first_order::<D>(system, clique, &state.q));
+        let rank = |system: &System| factored::<D>(system, state).solver.rank(&system.matrix);
+        let left = |system: &System| coordinates.saturating_sub(rank(system));
+        Some(Freedom { here: left(&first_order), nearby: left(system) })
     })
 }
 
@@ -80,23 +73,20 @@ fn bent<const D: usize>(system: &System, state: &State, cliques: Vec<FlatClique>
     // Any numbers without a pattern do.
     let mut v: Vec<f64> =
         (0..state.q.len()).map(|k| moves(k) * ((k as f64 * 0.618_033_988_749_895).fract() - 0.5)).collect();
-    let m = first_order.row_count();
+    let m = first_order.all_row_count();
     let (mut rate, mut nu) = (vec![0.0; m], vec![0.0; m]);
     equation.rows.J.multiply::<D>(&v, &mut rate);
     equation.solver.solve(&first_order.matrix, &rate, &mut nu);
     equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, &mut v);
     let bends = |clique: &FlatClique| {
         let fastest = clique.particles.iter().map(|&id| norm(block::<D>(&v, id))).fold(0.0, f64::max);
-        as_rigid::<D>(clique, &state.q).iter().any(|constraint| match constraint {
-            Constraint::Relation(relation) => {
-                let mut sum = [0.0; D];
-                for &(id, weight) in &relation.terms {
-                    let v = block::<D>(&v, id);
-                    sum = std::array::from_fn(|k| sum[k] + weight * v[k]);
-                }
-                norm(sum) > BENDS * fastest
+        relations::<D>(clique, &system.inverse_mass, &state.q).iter().any(|relation| {
+            let mut sum = [0.0; D];
+            for &(id, weight) in &relation.terms {
+                let v = block::<D>(&v, id);
+                sum = std::array::from_fn(|k| sum[k] + weight * v[k]);
             }
-            _ => false,
+            norm(sum) > BENDS * fastest
         })
     };
     cliques.into_iter().filter(bends).collect()
@@ -124,66 +114,16 @@ fn at_first_order<const D: usize>(system: &System, clique: &FlatClique, q: &[f64
         let mut tree = Classes::new(clique.particles.len());
         return rods.filter(|rod| tree.join(&[place(rod.a), place(rod.b)])).map(|rod| rod.clone().into()).collect();
     }
-    let points: Vec<[f64; 3]> = clique.particles.iter().map(|&id| raised(block::<D>(q, id))).collect();
-    match rigid_rods(Dimension::Two, &Flat::new(&points, false).in_plane()) {
-        Ok(pairs) => pairs.into_iter().map(|ends| rod_between(clique, &points, ends)).collect(),
+    let points = Flat::of::<D>(clique, q).in_plane();
+    match rigid_rods(Dimension::Two, &points) {
+        Ok(pairs) => pairs
+            .into_iter()
+            .map(|[a, b]| {
+                let length = norm(minus(points[b], points[a]));
+                Distance::new(clique.particles[a], clique.particles[b], length).into()
+            })
+            .collect(),
         // Two joints at one place: the rods as they are.
         Err(_) => rods.map(|rod| rod.clone().into()).collect(),
-    }
-}
-
-/// The rows of a rigid cluster in place of the rods of a clique.
-fn as_rigid<const D: usize>(clique: &FlatClique, q: &[f64]) -> Vec<Constraint> {
-    let points: Vec<[f64; 3]> = clique.particles.iter().map(|&id| raised(block::<D>(q, id))).collect();
-    let points = Flat::new(&points, clique.is_line).in_space();
-    let dimension = if D == 2 { Dimension::Two } else { Dimension::Three };
-    let Ok(RigidCluster { rods, combinations }) = rigid_cluster(dimension, &points) else { return Vec::new() };
-    let rods = rods.into_iter().map(|ends| rod_between(clique, &points, ends));
-    let relation = |terms: Vec<(usize, f64)>| {
-        let terms: Vec<_> = terms.into_iter().map(|(k, weight)| (clique.particles[k], weight)).collect();
-        Constraint::from(Relation::homogeneous(terms))
-    };
-    rods.chain(combinations.into_iter().map(relation)).collect()
-}
-
-fn rod_between(clique: &FlatClique, points: &[[f64; 3]], [a, b]: [usize; 2]) -> Constraint {
-    Distance::new(clique.particles[a], clique.particles[b], norm(minus(points[b], points[a]))).into()
-}
-
-/// Points in a line or a plane, as their coordinates along two unit vectors from the first point. Across a line the
-/// coordinate is 0: what roundoff leaves there is left out.
-struct Flat {
-    origin: [f64; 3],
-    axes: [[f64; 3]; 2],
-    coordinates: Vec<[f64; 2]>,
-}
-
-impl Flat {
-    fn new(points: &[[f64; 3]], is_line: bool) -> Self {
-        let origin = points[0];
-        let far = |from: &dyn Fn([f64; 3]) -> f64| {
-            points.iter().copied().fold(origin, |best, x| if from(x) > from(best) { x } else { best })
-        };
-        let unit = |d: [f64; 3]| if norm(d) > 0.0 { scaled(1.0 / norm(d), d) } else { d };
-        let along = unit(minus(far(&|x| norm(minus(x, origin))), origin));
-        let across = |x: [f64; 3]| {
-            let d = minus(x, origin);
-            minus(d, scaled(dot(d, along), along))
-        };
-        let beside = if is_line { [0.0; 3] } else { unit(across(far(&|x| norm(across(x))))) };
-        let coordinates = points.iter().map(|&x| [dot(minus(x, origin), along), dot(across(x), beside)]).collect();
-        Flat { origin, axes: [along, beside], coordinates }
-    }
-
-    /// The coordinates as points of the plane.
-    fn in_plane(&self) -> Vec<[f64; 3]> {
-        self.coordinates.iter().map(|&[x, y]| [x, y, 0.0]).collect()
-    }
-
-    /// The points in space.
-    fn in_space(&self) -> Vec<[f64; 3]> {
-        let [along, beside] = self.axes;
-        let point = |&[x, y]: &[f64; 2]| std::array::from_fn(|k| self.origin[k] + x * along[k] + y * beside[k]);
-        self.coordinates.iter().map(point).collect()
     }
 }

@@ -92,7 +92,7 @@ impl Equation {
     /// |J_i|² of active rows of contacts, 0 of others.
     fn weights<const D: usize>(&self, system: &System) -> Vec<f64> {
         let (J, layout) = (&self.rows.J, &self.rows.J.layout);
-        let mut weight = vec![0.0; system.row_count()];
+        let mut weight = vec![0.0; system.all_row_count()];
         for Contact { normal, tangents, .. } in &system.contacts.list {
             for row in std::iter::once(*normal).chain(tangents.clone()).filter(|&row| !self.is_inactive(row)) {
                 let entries = layout.start[row]..layout.start[row + 1];

@@ -17,8 +17,8 @@ pub enum Warning {
         /// Their names.
         rows: Vec<String>,
     },
-    /// Joints in a line, or in space in a plane, that rods hold only to second order: the tensions of these rods are
-    /// noise, and `breaks_at` does not act on them.
+    /// Joints in a line, or in space in a plane, that rods hold only to second order: the tensions of these rods
+    /// have no meaning, and `breaks_at` and `breaks_at_impulse` do not act on them.
     SecondOrder {
         /// The names of the joints of each such group.
         joints: Vec<Vec<String>>,
@@ -112,7 +112,7 @@ impl fmt::Display for Warning {
             Warning::SecondOrder { joints } => write!(
                 f,
                 "rods hold {} in a line or plane only to second order: the motion is right, but the tensions of these \
-                 rods have no meaning, and `breaks_at` does not act on them. Hold these joints by \
+                 rods have no meaning, and no load breaks them. Hold these joints by \
                  `kind = \"rigid\"`, or one joint between two others by `kind = \"line\"`",
                 groups(joints)
             ),

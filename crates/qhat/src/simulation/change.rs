@@ -74,7 +74,6 @@ impl Simulation {
         let mut bound = self.clone();
         bound.release();
         bound.system.bind(values)?;
-        bound.system.set_second_order(Vec::new());
         bound.workspace = bound.workspace.renewed(&bound.system);
         bound.start = bound.system.start();
         bound.reset()?;

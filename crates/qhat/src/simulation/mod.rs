@@ -9,7 +9,7 @@ mod saved;
 
 use crate::energy::Energy;
 use crate::error::StepError;
-use crate::integrate::{Workspace, check_start, project, step_for};
+use crate::integrate::{Workspace, check_start, consistent, project, step_for};
 use crate::multiplier::{Freedom, freedom, second_order};
 use crate::report::{Projection, StepReport, WarningLog};
 use crate::settings::Settings;
@@ -61,19 +61,38 @@ impl Simulation {
         self.projection = Projection::default();
         // Also before the projection, whose error would name a constraint.
         check_start(&self.system, &self.state, &self.settings)?;
+        self.hold_second_order()?;
         if self.settings.integrator.projects() {
             self.projection = project(&self.system, &mut self.state, &self.settings, &mut self.workspace)?;
         }
         check_start(&self.system, &self.state, &self.settings)?;
-        let cliques = second_order(&self.system, &self.state);
-        if !cliques.is_empty() {
-            // Their rows are not left out, as the projection may have done before they were known.
-            self.state.rank = None;
-            self.workspace = self.workspace.renewed(&self.system);
-        }
-        self.system.set_second_order(cliques);
         self.account = EnergyAccount::open(&self.system, &self.state);
         self.log = WarningLog::default();
+        Ok(())
+    }
+
+    /// Gives the system rows for joints that its rods hold only to second order. They are found, and measured, at the
+    /// consistent positions that are nearest to the start.
+    fn hold_second_order(&mut self) -> Result<(), StepError> {
+        let flat = self.system.flat_cliques(&self.state);
+        if flat.is_empty() {
+            return Ok(());
+        }
+        let mut system = self.system.clone();
+        system.set_second_order(Vec::new(), &[]);
+        match consistent(&system, &self.state, &self.settings) {
+            Ok(start) => {
+                let cliques = second_order(&system, &start, flat);
+                system.set_second_order(cliques, &start.q);
+            }
+            Err(error) if self.settings.integrator.projects() => return Err(error),
+            // Without consistent positions, rods that hold nothing are not told from others.
+            Err(_) => {}
+        }
+        if !(system.second_order.is_empty() && self.system.second_order.is_empty()) {
+            self.workspace = self.workspace.renewed(&system);
+            self.system = system;
+        }
         Ok(())
     }
 
@@ -139,14 +158,15 @@ impl Simulation {
     }
 
     /// The joints that rods hold only to second order, found at the start: three in a line whose rods' lengths add up
-    /// and that no other row holds across it, four in a plane in space with all their distances. The motion is right.
-    /// The tensions of these rods are noise, which [`StepReport::max_tension`] leaves out and which breaks nothing.
+    /// and that no other row holds across it, four in a plane in space with all their distances. They move as if they
+    /// were one rigid body. No finite tensions of these rods do the same, so their tensions have no meaning:
+    /// [`StepReport::max_tension`] leaves them out, and they break nothing.
     pub fn second_order(&self) -> &[FlatClique] {
         &self.system.second_order
     }
 
     /// The degrees of freedom at the present position and of the mechanism near by, which differ where rods hold only
-    /// to second order; `None` where none do, or where the system is too large for its rank to be counted.
+    /// to second order; `None` where none do.
     pub fn freedom(&self) -> Option<Freedom> {
         freedom(&self.system, &self.state)
     }

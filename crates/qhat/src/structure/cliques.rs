@@ -52,14 +52,16 @@ struct Edge {
     rod: Option<ConstraintId>,
 }
 
-/// The flat cliques of the rigid rods of a system of d = D dimensions whose fixed particles are at q \[m\]. Those in a
-/// line come first.
+/// The flat cliques of the rigid rods that are whole, of a system of d = D dimensions whose fixed particles are at
+/// q \[m\]. Those in a line come first.
 pub(crate) fn flat_cliques<const D: usize>(
     constraints: &[NamedConstraint],
     inverse_mass: &[f64],
     q: &[f64],
+    is_broken: &dyn Fn(usize) -> bool,
 ) -> Vec<FlatClique> {
-    let edges = edges::<D>(constraints, inverse_mass, q);
+    let whole = constraints.iter().enumerate().filter(|&(place, _)| !is_broken(place));
+    let edges = edges::<D>(whole, inverse_mass, q);
     let graph = Graph::new(inverse_mass.len(), &edges);
     let mut lines = Classes::new(edges.len());
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -79,12 +81,16 @@ pub(crate) fn flat_cliques<const D: usize>(
     cliques
 }
 
-/// The rigid rods, each pair of particles once, and the distances of fixed particles that rods to one free particle
-/// bring together.
-fn edges<const D: usize>(constraints: &[NamedConstraint], inverse_mass: &[f64], q: &[f64]) -> Vec<Edge> {
+/// The rigid rods among constraints, which come with their places, each pair of particles once, and the distances of
+/// fixed particles that rods to one free particle bring together.
+fn edges<'a, const D: usize>(
+    constraints: impl Iterator<Item = (usize, &'a NamedConstraint)>,
+    inverse_mass: &[f64],
+    q: &[f64],
+) -> Vec<Edge> {
     let mut known: Vec<Edge> = Vec::new();
     let mut held_by: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (place, named) in constraints.iter().enumerate() {
+    for (place, named) in constraints {
         let Some(rod) = named.constraint.as_rod().filter(|rod| rod.compliance == 0.0 && rod.length > 0.0) else {
             continue;
         };

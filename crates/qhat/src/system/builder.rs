@@ -201,7 +201,9 @@ impl SystemBuilder {
             contacts: Contacts::default(),
             second_order: Vec::new(),
             second_order_rods: Vec::new(),
-            second_order_rows: Vec::new(),
+            following_rods: Vec::new(),
+            following: Vec::new(),
+            given: self.constraints.len(),
             jumpy: Vec::new(),
             bead_places: Vec::new(),
         };

@@ -12,7 +12,7 @@ impl System {
 
     /// The constraint with a name. The search takes time in proportion to the number of constraints.
     pub fn constraint(&self, name: &str) -> Option<ConstraintId> {
-        self.constraints.iter().position(|named| named.name == name).map(ConstraintId)
+        self.constraints().iter().position(|named| named.name == name).map(ConstraintId)
     }
 
     /// The force that was added under a name by [`SystemBuilder::named_force`](crate::SystemBuilder::named_force).
@@ -32,7 +32,7 @@ impl System {
 
     /// The constraint at a place in the order of addition, from 0.
     pub fn constraint_at(&self, index: usize) -> Option<ConstraintId> {
-        (index < self.constraints.len()).then_some(ConstraintId(index))
+        (index < self.constraints().len()).then_some(ConstraintId(index))
     }
 
     /// The force at a place in the order of addition to the builder, from 0.

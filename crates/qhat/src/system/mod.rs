@@ -6,6 +6,7 @@ mod error;
 mod lookup;
 mod parameters;
 mod particle;
+mod second_order;
 
 pub use builder::SystemBuilder;
 pub(crate) use builder::check_force;
@@ -56,8 +57,12 @@ pub struct System {
     pub(crate) second_order: Vec<FlatClique>,
     /// The rods of these cliques, ascending.
     second_order_rods: Vec<ConstraintId>,
-    /// Their rows, ascending.
-    second_order_rows: Vec<usize>,
+    /// Those of them whose lengths follow from the other rows, ascending.
+    following_rods: Vec<ConstraintId>,
+    /// The rows of those, ascending.
+    following: Vec<u32>,
+    /// The number of constraints that the user gave; those behind them hold cliques, and are not shown.
+    given: usize,
     /// The constraints whose gradient may jump, by their places.
     pub(crate) jumpy: Vec<usize>,
     /// The beads on curves, by their places among the constraints.
@@ -87,6 +92,11 @@ impl System {
 
     /// m, the number of scalar constraint rows.
     pub fn row_count(&self) -> usize {
+        self.constraints.get(self.given).map_or(self.all_row_count(), |hidden| hidden.first_row)
+    }
+
+    /// The number of rows, with those that hold joints which rods hold only to second order.
+    pub(crate) fn all_row_count(&self) -> usize {
         self.row_names.len()
     }
 
@@ -97,12 +107,12 @@ impl System {
 
     /// Names of the rows, m: the constraint's name, with its component where it has several rows.
     pub fn row_names(&self) -> &[String] {
-        &self.row_names
+        &self.row_names[..self.row_count()]
     }
 
     /// The |C| that counts as a relative error of one, for each row \[C\]: r for a rod.
     pub fn row_scales(&self) -> &[f64] {
-        &self.row_scale
+        &self.row_scale[..self.row_count()]
     }
 
     /// m_i \[kg\], n.
@@ -125,7 +135,7 @@ impl System {
 
     /// The constraints, in the order of addition.
     pub fn constraints(&self) -> &[NamedConstraint] {
-        &self.constraints
+        &self.constraints[..self.given]
     }
 
     /// The links: constraints that act along the line of two particles (rods, ropes, struts), in the order of addition.
@@ -195,54 +205,10 @@ impl System {
         system
     }
 
-    /// The same system with other constraints in place of the rods of some cliques.
-    pub(crate) fn with_cliques(
-        &self,
-        cliques: &[FlatClique],
-        stand_in: &dyn Fn(&FlatClique) -> Vec<Constraint>,
-    ) -> System {
-        let mut is_replaced = vec![false; self.constraints.len()];
-        cliques.iter().flat_map(|clique| &clique.rods).for_each(|rod| is_replaced[rod.0] = true);
-        let kept = self.constraints.iter().zip(is_replaced).filter(|(_, is_replaced)| !is_replaced);
-        let kept = kept.map(|(named, _)| (named.name.clone(), named.constraint.clone()));
-        let others = cliques.iter().flat_map(stand_in).map(|constraint| (String::new(), constraint));
-        let mut system = self.clone();
-        system.set_constraints(kept.chain(others).collect());
-        system.set_second_order(Vec::new());
-        // The uses name constraints by their places in this system.
-        system.parameters = Parameters::default();
-        system.matrix = MatrixStructure::new(&system.layout, &system.inverse_mass, system.plan_matrix());
-        system
-    }
-
-    /// Whether a constraint is a rod whose tension has no meaning, because it holds a joint only to second order.
-    pub(crate) fn is_second_order(&self, constraint: usize) -> bool {
-        self.second_order_rods.binary_search(&ConstraintId(constraint)).is_ok()
-    }
-
-    /// Whether a row belongs to such a rod.
-    pub(crate) fn is_second_order_row(&self, row: usize) -> bool {
-        self.second_order_rows.binary_search(&row).is_ok()
-    }
-
-    /// Takes the cliques that are held only to second order.
-    pub(crate) fn set_second_order(&mut self, cliques: Vec<FlatClique>) {
-        self.second_order_rods = cliques.iter().flat_map(|clique| clique.rods.iter().copied()).collect();
-        self.second_order_rods.sort_unstable();
-        self.second_order_rows = self.second_order_rods.iter().map(|id| self.constraints[id.0].first_row).collect();
-        self.second_order = cliques;
-    }
-
-    /// The names of the joints of the cliques that are held only to second order.
-    pub(crate) fn names_of_cliques(&self) -> Vec<Vec<String>> {
-        let name = |id: &ParticleId| self.particle_names[id.0].clone();
-        self.second_order.iter().map(|clique| clique.particles.iter().map(name).collect()).collect()
-    }
-
     /// The mass [kg] of all particles that hang together with one through constraints.
     pub(crate) fn connected_mass(&self, particle: ParticleId) -> f64 {
         let mut neighbours = vec![Vec::new(); self.particle_count()];
-        for row in 0..self.row_count() {
+        for row in 0..self.all_row_count() {
             let particles = &self.layout.particle[self.layout.start[row]..self.layout.start[row + 1]];
             for pair in particles.windows(2) {
                 neighbours[pair[0].0].push(pair[1].0);
@@ -325,7 +291,8 @@ impl System {
         self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
     }
 
-    /// Writes the constraints, their rows, and the structure that follows from them.
+    /// Writes the constraints, of which those from `given` on hold cliques, their rows, and the structure that follows
+    /// from them.
     fn set_constraints(&mut self, constraints: Vec<(String, Constraint)>) {
         let dimension = self.dimension();
         self.constraints.clear();
@@ -337,6 +304,9 @@ impl System {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
                 1 => self.row_names.push(name.clone()),
+                rows if self.constraints.len() >= self.given => {
+                    self.row_names.extend(std::iter::repeat_n(name.clone(), rows));
+                }
                 rows if constraint.is_vector() => {
                     self.row_names.extend(["x", "y", "z"][..rows].iter().map(|axis| format!("{name}.{axis}")));
                 }
@@ -348,6 +318,7 @@ impl System {
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
+        self.following = self.following_rods.iter().map(|id| self.constraints[id.0].first_row as u32).collect();
         self.contacts = Contacts::new(&self.constraints, dimension);
         let constraints = self.constraints.iter().enumerate();
         self.jumpy =

@@ -7,11 +7,9 @@
 //! 3. every |C| is at most what `drift::attainable` says: half the constraint tolerance, against the scale of the row
 //!    and the extent of the system, which are fixed at the start;
 //! 4. the projection onto C = 0 and Ċ = 0 moved q and q̇ by at most `MOVED` tolerances, in the norm of the estimate: a
-//!    method that is right to the tolerance leaves no more to correct. Two motions may be moved further: one whose
-//!    velocities were not projected before, near a singular position, and one of joints that rods hold only to second
-//!    order;
-//! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage, but where rods hold joints
-//!    only to second order.
+//!    method that is right to the tolerance leaves no more to correct. A motion whose velocities were not projected
+//!    before, near a singular position, may be moved further;
+//! 5. its multipliers are in balance: A λ = b to the part `BALANCE` of b at every stage.
 //!
 //! A substep that is not kept is tried again with a shorter length. If the shortest is not kept either, the frame ends
 //! with an error that names the culprit of the condition that failed. The projection of a start and impacts may move
@@ -27,8 +25,7 @@ const MISSED: f64 = 3.0;
 /// less than one tolerance; the constraint tolerance, which may have gathered over many substeps, is allowed as well.
 const MOVED: f64 = 10.0;
 
-/// Relative residual of A λ = b. A load of a billion beads leaves 1e-7 by rounding alone, and rods that hold only to
-/// second order, at an angle of 1e-5, leave 1e-5.
+/// Relative residual of A λ = b. A load of a billion beads leaves 1e-7 by rounding alone.
 pub(crate) const BALANCE: f64 = 1e-3;
 
 /// The condition that a substep failed, besides its error estimate and C = 0.

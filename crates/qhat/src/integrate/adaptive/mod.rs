@@ -97,7 +97,7 @@ pub(crate) struct Attempt {
 pub(crate) fn begin<const D: usize>(frame: &mut Frame<'_>, state: &State, carry: Option<Carry>) -> Vec<f64> {
     let (system, workspace) = (frame.system, &mut *frame.workspace);
     workspace.set_modes(system, state);
-    let Some(carry) = carry.filter(|carry| carry.lambda.len() == system.row_count()) else {
+    let Some(carry) = carry.filter(|carry| carry.lambda.len() == system.all_row_count()) else {
         return workspace.solve::<D>(system, state, &Feedback::NONE).lambda.clone();
     };
     let is_factored = workspace.is_factored_at(state);

@@ -114,15 +114,15 @@ impl<F: Field> Stepper for PairStepper<'_, F> {
         if !accepts(error, self.settings) {
             return Outcome::Met(attempt);
         }
-        // The tensions of rods that hold only to second order are noise.
-        if imbalance > BALANCE && self.system.second_order.is_empty() {
+        if imbalance > BALANCE {
             return Outcome::Refused(Refusal::Balance);
         }
         self.stages.remember();
         let Stages { q, qd, next_q, next_qd, .. } = self.stages;
         match self.field.project(next_q, next_qd, end, self.settings) {
             Projected::Met(_) if self.field.passes_an_edge(q, qd, state.t, end) => Outcome::Refused(Refusal::Edge),
-            Projected::Met(_) if !self.may_move() && !accepts_move(self.moved(h), self.settings) => {
+            // Velocities that were not projected near a singular position are projected beyond it.
+            Projected::Met(_) if !self.field.is_unprojected() && !accepts_move(self.moved(h), self.settings) => {
                 self.stages.recall();
                 Outcome::Refused(Refusal::Jump)
             }
@@ -164,13 +164,6 @@ impl<F: Field> PairStepper<'_, F> {
     /// The speed to which errors of velocities are relative [m/s].
     pub(crate) fn speed(&self, h: f64) -> f64 {
         reference_speed(self.system, vector_unit().dispatch(Largest(&self.stages.next_qd)), h)
-    }
-
-    /// Whether a projection may move the motion by more than its error: rods that hold only to second order stop a
-    /// motion across them as a blow would, and velocities that were not projected near a singular position are
-    /// projected beyond it.
-    fn may_move(&self) -> bool {
-        !self.system.second_order.is_empty() || self.field.is_unprojected()
     }
 
     /// The way that the projection moved the motion, in the norm of the error estimate.

@@ -44,7 +44,7 @@ pub(super) struct Graph {
     sorted: Vec<(usize, usize)>,
     /// (first, second): the block of the edge is H_first,second.
     pub(super) edges: Vec<(usize, usize)>,
-    /// For each row whether it lies on no node.
+    /// For each row whether it lies on no node, or never acts.
     pub(super) idle: Vec<bool>,
     /// Rows that act through a penalty.
     pub(super) penalties: Vec<usize>,
@@ -127,15 +127,16 @@ impl Graph {
         self.sorted.binary_search(&(a.min(b), a.max(b))).unwrap_or(NONE)
     }
 
-    /// The entries of a row that lie on nodes.
+    /// The entries of a row that lie on nodes; none of a row that never acts.
     fn touched(&self, system: &System, row: usize) -> Vec<usize> {
         let entries = system.layout.start[row]..system.layout.start[row + 1];
-        entries.filter(|&entry| self.entry_node[entry] != NONE).collect()
+        let acts = !system.is_following(row);
+        entries.filter(|&entry| acts && self.entry_node[entry] != NONE).collect()
     }
 
     fn order_elimination(&mut self, system: &System) {
         let count = self.particle.len();
-        self.idle = (0..system.row_count()).map(|row| self.touched(system, row).is_empty()).collect();
+        self.idle = (0..system.all_row_count()).map(|row| self.touched(system, row).is_empty()).collect();
         let mut neighbours: Vec<Vec<(usize, usize)>> = vec![Vec::new(); count];
         for (edge, &(a, b)) in self.edges.iter().enumerate() {
             neighbours[a].push((b, edge));
@@ -149,7 +150,7 @@ impl Graph {
             std::iter::repeat_n(named.constraint.pulls_on_each(), rows)
         });
         let pulls_on_each: Vec<bool> = pulling.collect();
-        for row in (0..system.row_count()).rev() {
+        for row in (0..system.all_row_count()).rev() {
             match self.touched(system, row)[..] {
                 [entry] => row_of_node[self.entry_node[entry]] = row,
                 // A row without a gradient at the child would be lost with it.
@@ -162,7 +163,7 @@ impl Graph {
                 _ => {}
             }
         }
-        let mut eliminated_with = vec![false; system.row_count()];
+        let mut eliminated_with = vec![false; system.all_row_count()];
         let mut visited = vec![false; count];
         let (mut links, mut in_cycles) = (Vec::new(), Vec::new());
         // Roots with a row to a fixed particle come first: that row then needs no penalty.
@@ -195,7 +196,7 @@ impl Graph {
         }
         links.reverse();
         in_cycles.sort_unstable();
-        self.penalties = (0..system.row_count()).filter(|&row| !eliminated_with[row] && !self.idle[row]).collect();
+        self.penalties = (0..system.all_row_count()).filter(|&row| !eliminated_with[row] && !self.idle[row]).collect();
         self.has_cycles = !in_cycles.is_empty();
         self.forest = LeafToRoot::new(links, system.dimension());
         self.cycles = BlockLdl::new(&in_cycles, &self.edges, system.dimension());

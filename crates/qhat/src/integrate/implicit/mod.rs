@@ -92,7 +92,7 @@ pub(crate) fn frame<const D: usize>(
         }
     };
     let before = frame.factorizations();
-    if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.row_count()) {
+    if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.all_row_count()) {
         // λ of the equation is the best first guess.
         frame.workspace.solve::<D>(system, state, &Feedback::NONE);
         let equation = &mut frame.workspace.equation;

@@ -69,7 +69,7 @@ pub(super) struct Ending {
 
 impl Newton {
     pub(super) fn new(system: &System) -> Self {
-        let (matrix, m) = (Matrix::new(system), system.row_count());
+        let (matrix, m) = (Matrix::new(system), system.all_row_count());
         let nodes = matrix.graph.particle.len();
         let coordinates = system.coordinate_count();
         Newton {

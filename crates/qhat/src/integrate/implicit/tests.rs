@@ -92,7 +92,7 @@ fn forces(system: &System, mu: &[f64], q: &[f64]) -> Vec<f64> {
 
 /// `Matrix` and the dense matrix with differences for K have the same solution.
 fn check(what: &str, system: &System, q: &[f64]) {
-    let (n, m) = (q.len(), system.row_count());
+    let (n, m) = (q.len(), system.all_row_count());
     // In tension, the more the farther down the list: K is positive then, and nothing needs mending.
     let mu: Vec<f64> = (0..m).map(|row| -0.02 * (1.0 + row as f64)).collect();
     let qd: Vec<f64> = q.iter().map(|x| x / H_E).collect();
@@ -209,10 +209,10 @@ fn a_compressed_chain_is_mended() {
     let motion = Motion::<D> { q: &q, qd: &qd, t: 0.0 };
     let mut rows = system.empty_rows();
     system.evaluate_rows(motion, &mut rows);
-    let mu = vec![5.0; system.row_count()];
+    let mu = vec![5.0; system.all_row_count()];
     let mut matrix = Matrix::new(&system);
     assert!(matrix.factor(&Linearization { system: &system, rows: &rows, motion, mu: &mu, h_e: H_E, dependent: &[] }));
-    let (mut r, mut s) = (vec![1.0; matrix.graph.particle.len() * D], vec![0.0; system.row_count()]);
+    let (mut r, mut s) = (vec![1.0; matrix.graph.particle.len() * D], vec![0.0; system.all_row_count()]);
     let force = r.clone();
     matrix.solve::<D>(&system, &mut r, &mut s);
     // A positive definite matrix leads along the force, not against it.

@@ -92,7 +92,7 @@ pub(crate) fn carry_on<const D: usize>(
         }
     };
     let mut substeps = Substeps::new(frame, state).within(limit);
-    let carry = state.carry.take().filter(|carry| carry.lambda.len() == system.row_count());
+    let carry = state.carry.take().filter(|carry| carry.lambda.len() == system.all_row_count());
     frame.workspace.set_modes(system, state);
     let (lambda, before) = match carry {
         Some(carry) if state.rank.is_some() => (carry.lambda, carry.collocation),

@@ -98,7 +98,7 @@ impl Saddle {
             entries.map(|entry| (node[layout.particle[entry].0], entry)).filter(|&(node, _)| node != NONE)
         };
         let acts = |&row: &usize| system.is_rigid(row) && on_nodes(row).next().is_some();
-        let rows: Vec<usize> = (0..system.row_count()).filter(acts).collect();
+        let rows: Vec<usize> = (0..system.all_row_count()).filter(acts).collect();
         let touched: Vec<Vec<(usize, usize)>> = rows.iter().map(|&row| on_nodes(row).collect()).collect();
         let mut gradients: Vec<Vec<(usize, usize)>> = vec![Vec::new(); nodes];
         for (i, entries) in touched.iter().enumerate() {

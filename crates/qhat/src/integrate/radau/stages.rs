@@ -100,7 +100,7 @@ impl Stages {
             qd: vec![0.0; n],
             Q: vec![0.0; n],
             rows: system.empty_rows(),
-            lambda: vec![0.0; system.row_count()],
+            lambda: vec![0.0; system.all_row_count()],
             is_driven: false,
         }
     }
