@@ -177,7 +177,7 @@ impl Recorder {
     }
 
     /// Writes all members of the zip, up to its list of members.
-    fn fill(&mut self, zip: &mut ZipWriter<BufWriter<&File>>, origin: &str, snapshot: Option<&[u8]>) -> io::Result<()> {
+    fn fill(&mut self, zip: &mut ZipWriter<BufWriter<&File>>, origin: &str, extras: Extras<'_>) -> io::Result<()> {
         // The bytes depend on the scene and the settings alone, so that two runs can be compared. They hold no date.
         let options = SimpleFileOptions::DEFAULT.compression_method(CompressionMethod::Stored);
         for array in &mut self.arrays {
