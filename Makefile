@@ -55,8 +55,6 @@ tests:
 	@scripts/setup browser
 	@echo "Testing the Rust crates"
 	@cargo test --release $(WORKSPACE)
-	@echo "Testing that a debug build computes the same bits"
-	@cargo test --package qhat-scene --test golden
 	@echo "Testing that wasm computes the same bits"
 	@scripts/build-wasm --node
 	@node --test crates/qhat-wasm/tests/golden.mjs
@@ -93,7 +91,9 @@ else
 	@target/release/qhat-differ seeds 0 $$((390 * $(or $(TIMES),20)))
 endif
 
-bits: ## compare the bits of aarch64, under emulation, with those of the golden test
+bits: ## compare the bits of a debug build, and of aarch64 under emulation, with those of the golden test
+	@echo "Testing that a debug build computes the same bits"
+	@cargo test --package qhat-scene --test golden
 	@scripts/setup aarch64
 	@echo "Testing that aarch64 computes the same bits"
 	@scripts/bits
