@@ -44,6 +44,9 @@ pub(crate) enum Command {
     },
 }
 
+/// The options that a run which goes on keeps from before.
+const KEPT: [&str; 8] = ["set", "select", "frames", "h", "integrator", "tolerance", "max_substeps", "no_tension"];
+
 /// Values of parameters.
 #[derive(Args, Debug)]
 pub(crate) struct Parameters {
@@ -70,8 +73,7 @@ pub(crate) struct Run {
 
     /// Go on from this trajectory (.npz) of a run that ended, was interrupted or was killed, as if it had not stopped;
     /// the output replaces it unless -o names another file
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath,
-          conflicts_with_all = ["set", "select", "frames", "h", "integrator", "tolerance", "max_substeps", "no_tension"])]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = KEPT)]
     pub(crate) from: Option<PathBuf>,
 
     /// Write these quantities of every frame, as in positions,energy; all writes every one [default: t, positions,

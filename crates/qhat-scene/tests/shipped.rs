@@ -152,6 +152,15 @@ fn toml_and_json_say_the_same() {
         let tree: serde_json::Value = toml::from_str(shipped.text).unwrap();
         let text = serde_json::to_string_pretty(&tree).unwrap();
         let from_json = load(&text, "scene.json", Format::Json).unwrap_or_else(|errors| panic!("{errors}"));
-        assert_eq!(format!("{from_json:?}"), format!("{:?}", scene(shipped.name)), "{}", shipped.name);
+        let from_toml = scene(shipped.name);
+        let all = |scene: &Scene| {
+            // The lines in which numbers stand differ, and so does the text itself.
+            let uses: Vec<String> = scene.system.parameter_uses().iter().map(|it| it.text().to_owned()).collect();
+            let mut system = scene.system.clone();
+            system.forget_parameters();
+            let Scene { name, description, state, settings, duration, expect, .. } = scene;
+            format!("{name} {description} {system:?} {uses:?} {state:?} {settings:?} {duration} {expect:?}")
+        };
+        assert_eq!(all(&from_json), all(&from_toml), "{}", shipped.name);
     }
 }

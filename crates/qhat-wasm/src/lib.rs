@@ -114,8 +114,8 @@ impl Simulation {
     }
 
     /// Gives the parameters new values, one for each, and goes back to the start that follows from them, with the
-    /// settings of now and the forces of the scene. Throws `BindError`, `SceneErrors` or `StepError`; nothing is changed
-    /// then.
+    /// settings of now and the forces of the scene. Throws `BindError`, `SceneErrors` or `StepError`; nothing is
+    /// changed then.
     pub fn bind(&mut self, values: &[f64]) -> Result<(), JsValue> {
         let parameters = self.scene.system.parameters();
         if values.len() != parameters.len() {

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Numbers are little-endian. The content is in the format postcard, which keeps every bit of a float. A fingerprint
-//! is a hash (FNV-1a, 64 bits) of the particles, the constraints, the forces or the feedback with all their numbers; the
-//! checksum is the same hash of all bytes before it. Hash and checksum find mistakes and damage. They are no protection
-//! against bytes that were made to deceive.
+//! is a hash (FNV-1a, 64 bits) of the particles, the constraints, the forces or the feedback with all their numbers;
+//! the checksum is the same hash of all bytes before it. Hash and checksum find mistakes and damage. They are no
+//! protection against bytes that were made to deceive.
 
 use crate::state::State;
 use crate::system::System;

@@ -29,7 +29,7 @@ fn reports_settings_and_energies_come_back() {
     for (name, integrator) in Integrator::names() {
         assert_eq!(serde_json::from_str::<Integrator>(&format!("\"{name}\"")).unwrap(), integrator);
     }
-    let event = r#"{"time":0.5,"constraint":"ground","kind":{"Impact":{"speed":2.0}}}"#;
+    let event = r#"{"time":0.5,"constraint":"ground","kind":{"Impact":{"speed":2.0}},"impulse":3.0}"#;
     let event: Event = serde_json::from_str(event).unwrap();
     assert_eq!(event.kind, EventKind::Impact { speed: 2.0 });
     comes_back(&event);

@@ -97,7 +97,8 @@ fn has_unit(text: &str) -> bool {
     let text = text.trim();
     let (number, unit) =
         text.split_at(text.find(|letter: char| !"+-.0123456789 ".contains(letter)).unwrap_or(text.len()));
-    number.trim().parse::<f64>().is_ok() && !unit.contains(['(', '+', '-'])
+    let is_unit = unit.starts_with(char::is_alphabetic) && !unit.contains(['(', '+', '-']);
+    number.trim().parse::<f64>().is_ok() && is_unit
 }
 
 /// The allowed range in words, where a number is outside of it.

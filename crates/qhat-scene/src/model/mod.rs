@@ -58,8 +58,8 @@ pub(crate) struct Document {
     /// The number of space dimensions, 2 or 3.
     #[schemars(range(min = 2, max = 3))]
     pub(crate) dimension: u8,
-    /// A table of numbers that expressions refer to by name. Wherever a number of the scene stands, a text of parameters
-    /// may stand, such as `"2*a"`.
+    /// A table of numbers that expressions refer to by name. Wherever a number of the scene stands, a text of
+    /// parameters may stand, such as `"2*a"`.
     #[serde(default)]
     pub(crate) parameters: BTreeMap<String, Parameter>,
     /// The table of the settings of a run.

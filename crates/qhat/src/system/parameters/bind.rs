@@ -59,6 +59,11 @@ impl System {
         outcome
     }
 
+    /// Makes plain numbers of all that depends on parameters.
+    pub fn forget_parameters(&mut self) {
+        self.parameters = Parameters::default();
+    }
+
     /// The state at the start: the positions and velocities that the builder was given, or those that follow from the
     /// parameters.
     pub fn start(&self) -> State {
@@ -83,6 +88,7 @@ impl System {
             for (it, &number) in uses.iter().zip(before.iter()).rev() {
                 self.write(it, number)?;
             }
+            before.clear();
             return Err(error);
         }
         before.clear();
