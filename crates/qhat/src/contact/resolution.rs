@@ -10,6 +10,7 @@ use super::complementarity::{along, size};
 use super::following::close_following;
 use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
+use crate::force::Acts;
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
 use crate::point::{Motion, larger, largest};
@@ -31,7 +32,7 @@ const SHOCK: f64 = 1e-3;
 /// The report of a resolution.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Resolved {
-    /// Kinetic energy lost in impacts [J].
+    /// Energy lost [J]: kinetic energy in impacts, and the energy that elastic links held when they broke.
     pub(crate) lost: f64,
     /// Impacts, in which a contact closed faster than the bounce speed; then the changes of modes.
     pub(crate) events: Vec<Event>,
@@ -61,7 +62,7 @@ impl<const D: usize> EventResolution<'_, D> {
         let at_first = modes.clone();
         let next_slip = self.next_slip(cause);
         if let Some(EventCause::Break(breakable)) = cause {
-            modes.broken[breakable] = true;
+            resolved.lost += self.break_link(modes, breakable);
         }
         let mut last = 0;
         for round in 0..ROUNDS {
@@ -198,10 +199,19 @@ impl<const D: usize> EventResolution<'_, D> {
             resolved.warnings.truncate(warnings);
             let constraint = self.system.contacts.breakables[breakable].constraint;
             resolved.events.push(Event { impulse, ..self.event(constraint, EventKind::Broke) });
-            modes.broken[breakable] = true;
+            self.break_link(modes, breakable);
             self.qd.copy_from_slice(&before);
             self.evaluate();
         }
+    }
+
+    /// Breaks a link. Returns the energy that an elastic one held [J], which leaves with it.
+    fn break_link(&mut self, modes: &mut Modes, breakable: usize) -> f64 {
+        modes.broken[breakable] = true;
+        // The force of an elastic link is part of Q, which is evaluated before the modes are settled.
+        self.equation.set_modes(self.system, modes);
+        let motion = Motion::<D> { q: self.q, qd: self.qd, t: self.t };
+        self.system.breakable_force(breakable).map_or(0.0, |force| force.potential(motion, &self.system.mass))
     }
 
     /// The link whose impulse is farthest above its strength, with the impulse [N·s].

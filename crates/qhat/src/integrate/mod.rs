@@ -183,7 +183,8 @@ pub fn project(
 /// Refuses a state whose kinetic or potential energy is not finite, with the name of a particle.
 pub(crate) fn check_energy(system: &System, state: &State) -> Result<(), StepError> {
     in_dimension!(system.dimension, D => {
-        energy::check_finite(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, state.t)
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        energy::check_finite(system, motion, &state.modes.broken, state.t)
     })
 }
 

@@ -13,6 +13,7 @@ impl Equation {
     /// Takes the active rows and the sliding contacts from the modes. Nothing is factored for them yet.
     pub(crate) fn set_modes(&mut self, system: &System, modes: &Modes) {
         modes.write_inactive(&system.contacts, &mut self.inactive);
+        self.broken.clone_from(&modes.broken);
         self.sliding.clear();
         for (k, (contact, mode)) in system.contacts.list.iter().zip(&modes.contacts).enumerate() {
             if let Mode::Sliding(slip) = *mode {

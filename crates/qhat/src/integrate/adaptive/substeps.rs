@@ -276,7 +276,7 @@ impl<'a> Substeps<'a> {
     fn runaway(&self, state: &State, extents: f64) -> Option<StepError> {
         in_dimension!(self.system.dimension, D => {
             let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-            let (particle, acceleration) = energy::most_accelerated(self.system, motion)?;
+            let (particle, acceleration) = energy::most_accelerated(self.system, motion, &state.modes.broken)?;
             // A product that is not a number counts as too far.
             if acceleration * self.length * self.length < extents * self.system.extent {
                 return None;

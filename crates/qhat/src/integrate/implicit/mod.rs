@@ -211,8 +211,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
     fn keep(&mut self, state: &mut State, h: f64, projection: f64) {
         let Frame { system, workspace, .. } = &mut *self.frame;
         let Scratch { newton, base } = &*self.scratch;
-        let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: base.end });
-        let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+        let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: base.end }, &[]);
+        let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &[]);
         // The rule of the end point is backward Euler's own; the trapezoidal rule is of second order.
         let has_second_order = self.formula.second.is_some();
         let mean = |before: f64, after: f64| if has_second_order { 0.5 * (before + after) } else { after };
@@ -253,7 +253,7 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
             return not_satisfied(system, time, rows);
         }
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
-        match energy::most_accelerated(system, motion) {
+        match energy::most_accelerated(system, motion, &[]) {
             Some((particle, acceleration)) => {
                 StepError::RanAway { time, particle: system.particle_names[particle.0].clone(), acceleration }
             }

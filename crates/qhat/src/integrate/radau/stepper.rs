@@ -285,7 +285,7 @@ impl<const D: usize> RadauStepper<'_, D> {
         for i in 0..3 {
             stages.motion::<D>(step, saddle, i);
             let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.time(i) };
-            attempt.dissipation += step.h * A[2][i] * energy::dissipation(self.system, motion);
+            attempt.dissipation += step.h * A[2][i] * energy::dissipation(self.system, motion, &[]);
             if stages.is_driven {
                 self.system.evaluate_rows(motion, &mut stages.rows);
                 let power = energy::drive_power(self.system, &stages.rows.Ct, &stages.lambda);
