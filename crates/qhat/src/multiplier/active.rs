@@ -33,11 +33,7 @@ impl Equation {
 
     /// Moves the feet of beads on to a motion that was kept, and writes them to the state.
     pub(crate) fn follow_feet<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>, feet: &mut Vec<f64>) {
-        if !system.bead_places.is_empty() {
-            self.rows.feet.follow(&system.beads(), motion);
-            feet.clear();
-            feet.extend_from_slice(self.rows.feet.parameters());
-        }
+        system.follow_feet(&mut self.rows, motion, feet);
     }
 
     /// Whether a row is inactive now.

@@ -271,6 +271,15 @@ impl System {
         beads.collect()
     }
 
+    /// Moves the feet of beads in some rows on to a motion that was kept, and writes them to those of a state.
+    pub(crate) fn follow_feet<const D: usize>(&self, rows: &mut Rows, motion: Motion<'_, D>, feet: &mut Vec<f64>) {
+        if !self.bead_places.is_empty() {
+            rows.feet.follow(&self.beads(), motion);
+            feet.clear();
+            feet.extend_from_slice(rows.feet.parameters());
+        }
+    }
+
     pub(crate) fn empty_rows(&self) -> Rows {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
     }
