@@ -252,7 +252,7 @@ fn a_blow_that_is_shared_is_told() {
     let mut simulation = row_of_balls(0.0);
     let told = shared(&run(&mut simulation, 0.5));
     assert_eq!(told.len(), 1);
-    assert!(told[0].starts_with("`first` and `second` were struck at once at t = 0.1000 s"), "{}", told[0]);
+    assert!(told[0].starts_with("`first` and `second` were struck at once at t = 0.1 s"), "{}", told[0]);
     // One ball against two: momentum and energy are those of masses of 1 and 2.
     let v: Vec<f64> = simulation.state().velocities().iter().step_by(2).copied().collect();
     assert!(
