@@ -16,6 +16,7 @@
 
 mod adaptive;
 mod auto;
+mod dead_centre;
 mod edges;
 mod events;
 mod failure;
@@ -44,7 +45,8 @@ use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
 use adaptive::{dop853, dopri5, pair_frame};
-use failure::{at_an_edge, undecided, without_length};
+use dead_centre::undecided;
+use failure::{at_an_edge, without_length};
 use frame::Frame;
 
 /// Advances a state by one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
