@@ -27,6 +27,7 @@ impl Status {
             StepError::NotSatisfied { .. }
             | StepError::Penetrates { .. }
             | StepError::DriveBlocked { .. }
+            | StepError::DriveEnds { .. }
             | StepError::RateNotSatisfied { .. }
             | StepError::Undecided { .. }
             | StepError::CurveEnds { .. }

@@ -37,6 +37,21 @@ fn what_broke_is_told_with_its_name_and_its_time() {
     assert!(said.contains(&format!("arm broke at t = {expected:.6} s")), "{said}");
 }
 
+/// An elastic rod that is let go at its rest length carries m g (1 − cos ω t), with ω² = 1/(α m) = 1000/s².
+#[test]
+fn an_elastic_rod_breaks_when_its_tension_passes_the_limit() {
+    let elastic = BREAKS.replace("at = [1.0, 0.0]", "at = [0.0, -1.0]");
+    let elastic = elastic.replace("breaks_at = 20.0", "breaks_at = 15.0, compliance = 1e-3");
+    let folder = Folder::with(&[("elastic.toml", &elastic)]);
+    let summary = folder.qhat(&["run", "elastic.toml", "--json"]).well().json();
+    let broke = &summary["events"]["broke"];
+    assert_eq!((broke.as_array().unwrap().len(), broke[0]["constraint"].as_str()), (1, Some("arm")), "{broke}");
+    // 1 − cos ω t = 3/2.
+    let expected = 2.0 / 3.0 * std::f64::consts::PI / 1000.0_f64.sqrt();
+    let time = broke[0]["time"].as_f64().unwrap();
+    assert!((time - expected).abs() < 1e-9, "{time} s, expected {expected} s");
+}
+
 #[test]
 fn a_rope_that_an_impulse_breaks_is_told_with_the_impulse() {
     let folder = Folder::with(&[("jerked.toml", JERKED)]);

@@ -40,15 +40,22 @@ impl Energy {
 pub(crate) fn energy(system: &System, state: &State) -> Energy {
     in_dimension!(system.dimension, D => {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-        Energy { kinetic: kinetic(system, motion), potential: potential(system, motion), work: state.work }
+        let potential = potential(system, motion, &state.modes.broken);
+        Energy { kinetic: kinetic(system, motion), potential, work: state.work }
     })
 }
 
-/// Refuses a motion whose kinetic or potential energy is not finite; t is that of the last good state [s].
+/// Refuses a motion whose kinetic or potential energy is not finite; t is that of the last good state [s]. `broken` as
+/// in [`System::acting_forces`], here and below.
 ///
 /// # Errors
 /// [`StepError::EnergyNotFinite`] with the particle that has the largest part in it.
-pub(crate) fn check_finite<const D: usize>(system: &System, motion: Motion<'_, D>, t: f64) -> Result<(), StepError> {
+pub(crate) fn check_finite<const D: usize>(
+    system: &System,
+    motion: Motion<'_, D>,
+    broken: &[bool],
+    t: f64,
+) -> Result<(), StepError> {
     let refused = |energy, particle: ParticleId| StepError::EnergyNotFinite {
         time: t,
         energy,
@@ -59,7 +66,7 @@ pub(crate) fn check_finite<const D: usize>(system: &System, motion: Motion<'_, D
         let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
         return largest_of(moving, own).map_or(Ok(()), |particle| Err(refused("kinetic", particle)));
     }
-    for force in system.all_forces() {
+    for force in system.acting_forces(broken) {
         if !force.potential(motion, &system.mass).is_finite() {
             let concerned = force.particles();
             let concerned = if concerned.is_empty() { system.particles().collect() } else { concerned };
@@ -79,9 +86,13 @@ fn largest_of(particles: impl Iterator<Item = ParticleId>, number: impl Fn(Parti
 }
 
 /// The free particle with the largest acceleration under the applied forces, and that acceleration [m/s²].
-pub(crate) fn most_accelerated<const D: usize>(system: &System, motion: Motion<'_, D>) -> Option<(ParticleId, f64)> {
+pub(crate) fn most_accelerated<const D: usize>(
+    system: &System,
+    motion: Motion<'_, D>,
+    broken: &[bool],
+) -> Option<(ParticleId, f64)> {
     let mut Q = vec![0.0; system.coordinate_count()];
-    system.add_forces(motion, &mut Q);
+    system.add_forces(motion, broken, &mut Q);
     let size = |i: ParticleId| system.inverse_mass[i.0] * norm(block::<D>(&Q, i));
     let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
     largest_of(moving, size).map(|particle| (particle, size(particle)))
@@ -92,13 +103,13 @@ fn kinetic<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
     0.5 * moving.map(|i| system.mass[i.0] * dot(motion.v(i), motion.v(i))).sum::<f64>()
 }
 
-pub(crate) fn potential<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
-    system.all_forces().map(|force| force.potential(motion, &system.mass)).sum()
+pub(crate) fn potential<const D: usize>(system: &System, motion: Motion<'_, D>, broken: &[bool]) -> f64 {
+    system.acting_forces(broken).map(|force| force.potential(motion, &system.mass)).sum()
 }
 
 /// Power of all forces without a potential [W].
-pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>) -> f64 {
-    system.all_forces().map(|force| force.power(motion)).sum()
+pub(crate) fn dissipation<const D: usize>(system: &System, motion: Motion<'_, D>, broken: &[bool]) -> f64 {
+    system.acting_forces(broken).map(|force| force.power(motion)).sum()
 }
 
 /// Power of the drives [W]: −λᵀ C_t over the rigid rows. The constraint force has the power Jᵀλ·q̇ = λᵀ (Ċ − C_t), and
@@ -122,7 +133,8 @@ pub(crate) fn drive_power(system: &System, Ct: &[f64], lambda: &[f64]) -> f64 {
 pub(crate) fn energy_scale(system: &System, state: &State) -> f64 {
     let mut Q = vec![0.0; system.coordinate_count()];
     in_dimension!(system.dimension, D => {
-        system.add_forces(Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &mut Q);
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        system.add_forces(motion, &state.modes.broken, &mut Q);
         let moving = (0..system.particle_count()).map(ParticleId).filter(|&i| !system.is_fixed(i));
         system.extent * moving.map(|i| norm(block::<D>(&Q, i))).sum::<f64>()
     })

@@ -36,10 +36,24 @@ pub enum StepError {
         /// C beyond the jump.
         residual: f64,
     },
+    /// Ċ of a row is not continuous.
+    #[error(
+        "at t = {} s the rate of `{row}` jumps: its residual would leave zero at {} a second. A function in it has a \
+         kink there; write it so that its slope goes on",
+        shown(*time), Digits(rate.abs())
+    )]
+    RateJumps {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The row.
+        row: String,
+        /// Ċ beyond the jump \[C/s\].
+        rate: f64,
+    },
     /// No multipliers satisfy the equation of motion to three digits.
     #[error(
         "at t = {} s the constraint forces cannot be found to three digits: masses, lengths or forces are too many \
-         decades apart",
+         decades apart, or constraints nearly depend on each other",
         shown(*time)
     )]
     OutOfBalance {
@@ -186,6 +200,18 @@ pub enum StepError {
         /// Its C \[C\].
         residual: f64,
     },
+    /// A drive comes to a place where the other constraints do not follow it any more.
+    #[error(
+        "at t = {} s the drive `{drive}` asks for more than the other constraints allow: no substep is short enough to \
+         follow it, although the constraints hold up to there. It has come to the end of its linkage",
+        shown(*time)
+    )]
+    DriveEnds {
+        /// t of the last good state \[s\].
+        time: f64,
+        /// The drive.
+        drive: String,
+    },
     /// No velocities satisfy the constraints at the start.
     #[error("at t = {} s {}", shown(*time), rate_left(row, *rate, drive.as_deref()))]
     RateNotSatisfied {
@@ -226,7 +252,7 @@ pub enum StepError {
     /// or an arm of an angle has shrunk to nothing, or an expression has a kink there.
     #[error("at t = {} s {}", shown(*time), without_gradient(constraint, ends))]
     NoGradient {
-        /// t of the last good state \[s\].
+        /// t \[s\] of the last good state, or at which a driven length comes to nothing.
         time: f64,
         /// The constraint.
         constraint: String,
@@ -279,7 +305,8 @@ pub enum StepError {
 impl StepError {
     /// Whether constraints were not met, which another method might still do.
     pub(crate) fn is_unmet(&self) -> bool {
-        matches!(self, StepError::NotSatisfied { .. } | StepError::DriveBlocked { .. })
+        use StepError::{DriveBlocked, DriveEnds, NotSatisfied};
+        matches!(self, NotSatisfied { .. } | DriveBlocked { .. } | DriveEnds { .. })
     }
 }
 

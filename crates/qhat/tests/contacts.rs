@@ -152,29 +152,6 @@ fn a_rope_goes_slack_where_its_tension_ends() {
     assert!((opened.unwrap() - expected).abs() < 1e-8, "{opened:?}, expected {expected}");
 }
 
-/// A rod that breaks at 2 m g breaks where 3 cos a = 2, and its bob flies on.
-#[test]
-fn a_rod_breaks_where_its_tension_passes_the_limit() {
-    let mut builder = System::builder(Dimension::Two);
-    let pivot = builder.particle(Particle::at("pivot", [0.0, 0.0]).fixed());
-    let bob = builder.particle(Particle::at("bob", [1.0, 0.0]));
-    builder.with_constraint("rod", Distance::new(pivot, bob, 1.0).breaking_at(2.0 * G)).force(gravity());
-    let mut simulation = start(builder);
-    let before = simulation.energy().total();
-    let reports = run(&mut simulation, 1.0);
-    let broke = events(&reports);
-    assert_eq!(broke.len(), 1, "{broke:?}");
-    assert_eq!(broke[0].1, EventKind::Broke);
-    // T = 3 m g sin a, where a is the angle through which the bob has fallen.
-    let (system, state) = systems::pendulum(std::f64::consts::FRAC_PI_2);
-    let mut whole = Simulation::new(system, state, accurate()).unwrap();
-    whole.advance(broke[0].0).unwrap();
-    let sine = -whole.state().positions()[3];
-    assert!((sine - 2.0 / 3.0).abs() < 1e-8, "{sine}");
-    assert!((simulation.energy().total() - before).abs() < 1e-9);
-    assert_eq!(simulation.tension(), [0.0]);
-}
-
 #[test]
 fn integrators_without_events_say_so() {
     for integrator in Integrator::ALL {
@@ -275,7 +252,7 @@ fn a_blow_that_is_shared_is_told() {
     let mut simulation = row_of_balls(0.0);
     let told = shared(&run(&mut simulation, 0.5));
     assert_eq!(told.len(), 1);
-    assert!(told[0].starts_with("`first` and `second` were struck at once at t = 0.1000 s"), "{}", told[0]);
+    assert!(told[0].starts_with("`first` and `second` were struck at once at t = 0.1 s"), "{}", told[0]);
     // One ball against two: momentum and energy are those of masses of 1 and 2.
     let v: Vec<f64> = simulation.state().velocities().iter().step_by(2).copied().collect();
     assert!(
@@ -286,49 +263,4 @@ fn a_blow_that_is_shared_is_told() {
     assert_eq!(shared(&run(&mut simulation, 0.5)), [""; 0]);
     let v: Vec<f64> = simulation.state().velocities().iter().step_by(2).copied().collect();
     assert!([0.0, 0.0, 1.0].iter().zip(&v).all(|(expected, v)| (v - expected).abs() < 1e-12), "{v:?}");
-}
-
-/// 10 kg that fall a metre into a rope stop with an impulse of m √(2 g h). A rope that bears it stops them; a weaker
-/// one breaks, and the load falls on as if there were no rope.
-#[test]
-fn an_impulse_breaks_a_rope_that_does_not_bear_it() {
-    let impulse = 10.0 * (2.0 * G).sqrt();
-    for (strength, breaks) in [(1.01 * impulse, false), (0.99 * impulse, true)] {
-        let mut builder = System::builder(Dimension::Two);
-        let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
-        let load = builder.particle(Particle::at("load", [0.0, -1.0]).with_mass(10.0));
-        builder.with_constraint("rope", Limits::rope(hook, load, 2.0).breaking_at_impulse(strength)).force(gravity());
-        let mut simulation = start(builder);
-        let reports = run(&mut simulation, 1.0);
-        let happened: Vec<_> = reports.iter().flat_map(|report| &report.events).collect();
-        let first = happened.first().expect("the rope goes taut");
-        // The time of the impact is good to 1e-10 m over the speed.
-        assert!((first.impulse - impulse).abs() < 1e-8 && (first.time - (2.0 / G).sqrt()).abs() < 1e-10);
-        assert_eq!(first.kind == EventKind::Broke, breaks, "{first:?}");
-        let y = simulation.state().positions()[3];
-        let expected = if breaks { -1.0 - 0.5 * G } else { -2.0 };
-        assert!((y - expected).abs() < 1e-8, "{y} and not {expected}");
-    }
-}
-
-/// Three ropes side by side share a load that grows by 10 N a second from 10 N. The weakest breaks at 30 N, at the end
-/// of a frame; the others are then overloaded, and break at once.
-#[test]
-fn links_break_on_the_boundary_of_a_frame() {
-    let mut builder = System::builder(Dimension::Two);
-    let hook = builder.particle(Particle::at("hook", [0.0, 0.0]).fixed());
-    let load = builder.particle(Particle::at("load", [0.0, -1.0]));
-    for (name, strength) in [("r0", 20.0), ("r1", 15.0), ("r2", 10.0)] {
-        builder.constraint(name, Limits::rope(hook, load, 1.0).breaking_at(strength));
-    }
-    let pull = ["0", "-10 - 10*t"].map(|text| builder.expression(qhat::Purpose::Force, text).unwrap());
-    builder.force(qhat::ExpressionForce { particle: load, components: pull.to_vec() });
-    let (system, state) = builder.build().unwrap();
-    let mut simulation = Simulation::new(system, state, Settings { h: 0.01, ..accurate() }).unwrap();
-    let reports: Vec<_> = (0..210).map(|_| simulation.step().unwrap()).collect();
-    let events = reports.iter().flat_map(|report| &report.events);
-    let broke: Vec<_> = events.filter(|event| event.kind == EventKind::Broke).collect();
-    assert_eq!(broke.iter().map(|event| event.constraint.as_str()).collect::<Vec<_>>(), ["r2", "r1", "r0"]);
-    // A billionth of the strength is reached after 1e-9 s.
-    assert!(broke.iter().all(|event| (event.time - 2.0).abs() < 5e-9), "{broke:?}");
 }

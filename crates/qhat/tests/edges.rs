@@ -278,8 +278,16 @@ fn a_drive_at_the_end_of_its_linkage_is_named() {
     let drive = Driven::text("sqrt(2) + 0.6*sin(t)").unwrap();
     builder.constraint("drive", Nail::driven(slider, [drive, 0.0.into(), 0.0.into()]));
     for integrator in ADAPTIVE {
-        let error = ended(&builder, accurate(integrator), 3.0);
-        let is_named = matches!(&error, StepError::DriveBlocked { drive, .. } if drive == "drive");
+        let settings = accurate(integrator);
+        let error = ended(&builder, settings, 3.0);
+        let is_named = match &error {
+            // A residual within the tolerance is not off.
+            StepError::DriveBlocked { drive, residual, .. } => {
+                drive == "drive" && residual.abs() > settings.constraint_tolerance
+            }
+            StepError::DriveEnds { drive, .. } => drive == "drive",
+            _ => false,
+        };
         assert!(is_named, "{integrator}: {error}");
     }
 }
@@ -290,6 +298,7 @@ fn a_drive_that_asks_for_too_much_is_named() {
     for drive in ["2.05 - 0.05*cos(t)", "2 + 0.1*t"] {
         let error = ended(&slider_crank(drive, [0.5, 0.0]), accurate(Integrator::Dop853), 4.0);
         let is_named = matches!(&error, StepError::DriveBlocked { drive, .. } if drive == "drive")
+            || matches!(&error, StepError::DriveEnds { drive, .. } if drive == "drive")
             || matches!(&error, StepError::RateNotSatisfied { drive: Some(drive), .. } if drive == "drive");
         assert!(is_named, "{drive}: {error}");
     }
@@ -303,5 +312,69 @@ fn a_drive_that_asks_for_too_much_is_named() {
             assert_eq!((row.as_str(), drive.as_deref()), ("motor", Some("motor")));
         }
         other => panic!("{other}"),
+    }
+}
+
+/// A driven radius about a point, or about a particle, that comes to nothing at t = 1 s is named by every method that
+/// shortens its substeps.
+#[test]
+fn a_driven_radius_that_comes_to_nothing_is_named() {
+    for ends in [vec!["bead"], vec!["bead", "hub"]] {
+        let mut builder = System::builder(Dimension::Two);
+        let bead = builder.particle(Particle::at("bead", [1.0, 0.0]));
+        let hub = builder.particle(Particle::at("hub", [0.0, 0.0]).fixed());
+        let radius = Driven::text("1 - t").unwrap();
+        let sphere =
+            if ends.len() == 1 { OnSphere::new(bead, [0.0; 3], radius) } else { OnSphere::new(bead, hub, radius) };
+        builder.with_constraint("rail", sphere).force(gravity());
+        for integrator in ADAPTIVE.into_iter().chain([Integrator::Radau5, Integrator::Implicit, Integrator::Bdf2]) {
+            match ended(&builder, systems::settings(integrator, 0.01), 2.0) {
+                StepError::NoGradient { time, constraint, ends: named } => {
+                    assert_eq!(constraint, "rail", "{integrator}");
+                    assert_eq!(named, ends, "{integrator}");
+                    // The smallest length that counts as one is a millionth of the extent.
+                    assert!((time - 1.0).abs() < 1e-5, "{integrator}: {time}");
+                }
+                other => panic!("{integrator}: {other}"),
+            }
+        }
+    }
+}
+
+/// A string that winds itself round a post, whose atan2 jumps by 2π: every method that shortens its substeps says so.
+#[test]
+fn a_residual_that_jumps_is_named() {
+    let mut builder = System::builder(Dimension::Two);
+    builder.particle(Particle::at("puck", [0.1, 1.0]).with_velocity([-1.0, 0.0]));
+    let string = "sqrt(puck.x^2 + puck.y^2 - 0.01) \
+                  + 0.1*(atan2(puck.y, puck.x) - acos(0.1/sqrt(puck.x^2 + puck.y^2))) - 1";
+    let string = builder.expression(Purpose::Constraint, string).unwrap();
+    builder.constraint("string", ExpressionConstraint::new(string, &[0.1, 1.0]));
+    for integrator in ADAPTIVE.into_iter().chain([Integrator::Radau5]) {
+        match ended(&builder, accurate(integrator), 4.5) {
+            StepError::Jumps { row, residual, .. } => {
+                assert_eq!(row, "string", "{integrator}");
+                // 2π R, as far as the sharpest step tried sees of it.
+                assert!((residual.abs() - 0.2 * std::f64::consts::PI).abs() < 1e-9, "{integrator}: {residual}");
+            }
+            other => panic!("{integrator}: {other}"),
+        }
+    }
+}
+
+/// A contact that is open is not held, so its gap is not at fault where a force grows without bound.
+#[test]
+fn an_open_contact_is_not_at_fault() {
+    let mut builder = System::builder(Dimension::Two);
+    let ball = builder.particle(Particle::at("ball", [1.0, 0.0]));
+    let force = ["ball.x^5", "0"].map(|text| builder.expression(Purpose::Force, text).unwrap());
+    builder.force(qhat::ExpressionForce { particle: ball, components: force.to_vec() });
+    let ground = qhat::Surface::HalfSpace { normal: [0.0, 1.0, 0.0], offset: -1.0 };
+    builder.constraint("ground", qhat::Obstacle::new(ball, ground));
+    for integrator in [Integrator::Auto, Integrator::Dop853, Integrator::Dopri5] {
+        match ended(&builder, accurate(integrator), 10.0) {
+            StepError::RanAway { particle, .. } | StepError::NotFinite { particle, .. } => assert_eq!(particle, "ball"),
+            other => panic!("{integrator}: {other}"),
+        }
     }
 }

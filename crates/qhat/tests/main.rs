@@ -12,6 +12,7 @@ mod bind;
 mod chains_against_general;
 mod columns;
 mod contacts;
+mod contacts_breaking;
 mod contacts_capstan;
 mod contacts_friction;
 mod contacts_random;

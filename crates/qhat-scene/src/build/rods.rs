@@ -39,6 +39,10 @@ impl Assembly<'_, '_, '_> {
         (a, b): (ParticleId, ParticleId),
         place: &Node,
     ) -> Option<f64> {
+        if place.get("length").is_some() {
+            // It was refused, and told.
+            return None;
+        }
         let length = self.distance(a, b);
         let [one, other] = between.each_ref().map(|Id(id)| self.report.quoted(id));
         let complaint = if length == 0.0 {

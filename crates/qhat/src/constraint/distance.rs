@@ -29,6 +29,9 @@
 //! others. For all other methods the soft rod is a spring of stiffness 1/α with a damper c in parallel, and A has no
 //! active row for it. λ and tension mean the same for all methods.
 //!
+//! A soft rod breaks as a rigid one does, by its tension, that of the damper included. The energy C²/2α that it held
+//! leaves with it, and is booked as dissipated.
+//!
 //! EA \[N\], the `stiffness` of a rod, acts only where redundant rods share a force: a rod takes part in the share as
 //! if it stretched by T L/EA (`multiplier/share/`). The motion does not depend on it.
 //!
@@ -73,7 +76,7 @@ pub struct Distance {
     pub damping: f64,
     /// The tension or thrust at which the rod breaks \[N\].
     pub breaks_at: Option<f64>,
-    /// The impulse of a blow at which the rod breaks \[N·s\].
+    /// The impulse of a blow at which the rod breaks \[N·s\]; `None` for a rod of a compliance, which takes no blow.
     pub breaks_at_impulse: Option<f64>,
     /// EA \[N\], positive; 1 unless given. It only weighs how redundant rods share a force.
     pub stiffness: f64,
@@ -271,8 +274,8 @@ impl Holds for Distance {
         if self.compliance > 0.0 && self.form == DistanceForm::Squared {
             return Err(ConstraintError::ComplianceInSquaredForm);
         }
-        if (self.breaks_at.is_some() || self.breaks_at_impulse.is_some()) && self.compliance > 0.0 {
-            return Err(ConstraintError::ComplianceThatBreaks);
+        if self.breaks_at_impulse.is_some() && self.compliance > 0.0 {
+            return Err(ConstraintError::ComplianceTakesNoBlow);
         }
         check_impulse(self.breaks_at_impulse)?;
         Ok(check_strength(self.breaks_at)?)

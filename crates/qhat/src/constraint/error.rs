@@ -57,9 +57,9 @@ pub enum ConstraintError {
     /// A rod with a compliance is in the squared form.
     #[error("a rod with a compliance must be held in the length form")]
     ComplianceInSquaredForm,
-    /// A rod has both a compliance and a tension at which it breaks.
-    #[error("a rod with a compliance cannot break: leave out one of the two")]
-    ComplianceThatBreaks,
+    /// A rod has both a compliance and an impulse at which it breaks.
+    #[error("a rod with a compliance gives way to a blow, so that no impulse breaks it: give `breaks_at`, a tension")]
+    ComplianceTakesNoBlow,
     /// A rope or strut has no limit.
     #[error("give the shortest length, the longest, or both")]
     NoLimits,

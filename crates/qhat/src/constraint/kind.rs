@@ -86,6 +86,12 @@ pub(crate) trait Holds {
         Vec::new()
     }
 
+    /// The least driven radius, half axis or length of a rod at t [m], which must stay above zero; infinite where there
+    /// is none.
+    fn least_size(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// The same constraint in the form that belongs to a formulation.
     fn formulated(&self, formulation: Formulation) -> Self;
 

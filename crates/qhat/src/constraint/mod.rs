@@ -151,6 +151,9 @@ macro_rules! constraints {
             fn arms(&self) -> Vec<[ParticleId; 2]> {
                 match self { $(Constraint::$kind(constraint) => Holds::arms(constraint),)* }
             }
+            fn least_size(&self, t: f64) -> f64 {
+                match self { $(Constraint::$kind(constraint) => Holds::least_size(constraint, t),)* }
+            }
             fn formulated(&self, formulation: Formulation) -> Self {
                 match self { $(Constraint::$kind(constraint) => constraint.formulated(formulation).into(),)* }
             }

@@ -79,6 +79,10 @@ impl Smooth for OnEllipse {
         self.center.particle().map(|center| [self.particle, center]).into_iter().collect()
     }
 
+    fn least_size(&self, t: f64) -> f64 {
+        self.half[0].value(t).min(self.half[1].value(t))
+    }
+
     fn scale(&self, _: f64) -> f64 {
         (self.half[0].value(0.0) * self.half[1].value(0.0)).sqrt()
     }

@@ -85,6 +85,10 @@ impl Smooth for OnSphere {
         self.center.particle().map(|center| [self.particle, center]).into_iter().collect()
     }
 
+    fn least_size(&self, t: f64) -> f64 {
+        self.radius.value(t)
+    }
+
     fn scale(&self, _: f64) -> f64 {
         self.radius.value(0.0)
     }

@@ -58,6 +58,11 @@ pub(crate) trait Smooth: Clone {
         Vec::new()
     }
 
+    /// As [`Holds::least_size`].
+    fn least_size(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// `Ok` if the constraint has a meaning in d dimensions; the error says why it has none.
     fn fits(&self, dimension: usize) -> Result<(), ConstraintError> {
         Self::ONLY_IN.map_or(Ok(()), |only| super::error::only_in(only, dimension))
@@ -257,6 +262,10 @@ impl<S: Smooth> Holds for S {
 
     fn arms(&self) -> Vec<[ParticleId; 2]> {
         Smooth::arms(self)
+    }
+
+    fn least_size(&self, t: f64) -> f64 {
+        Smooth::least_size(self, t)
     }
 
     fn formulated(&self, _: Formulation) -> Self {

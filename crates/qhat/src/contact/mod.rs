@@ -14,13 +14,15 @@
 //!
 //! Between two events no mode changes, and the motion is as smooth as with equations alone. `event_functions.rs` says
 //! what is watched, `integrate/events/` finds the time of an event, `resolution.rs` decides how it goes on:
-//! `impact.rs` the jump of the velocity, `complementarity.rs` the next modes, `following.rs` the contacts that close
-//! because they follow from others. `changes.rs` reports it.
+//! `blows.rs` which contacts a blow strikes and which links it breaks, `impact.rs` the jump of the velocity,
+//! `complementarity.rs` the next modes, `following.rs` the contacts that close because they follow from others.
+//! `changes.rs` reports it.
 //!
 //! `complementarity.rs` asks `contradictions.rs` which modes are wrong, by the tolerances of `roundoff.rs`, and takes
 //! modes from `pyramids.rs` and `lemke.rs` where that does not end. `start.rs` and `nearest.rs` are about the start.
 //! Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996).
 
+mod blows;
 mod changes;
 mod complementarity;
 mod contradictions;

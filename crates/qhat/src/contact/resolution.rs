@@ -12,8 +12,8 @@ use super::rest::{RestThresholds, rest_speed};
 use super::{EventCause, Impact, NoConsistentModes, SAME_WAY, Touching, hold, settle};
 use crate::modes::{Mode, Modes};
 use crate::multiplier::Equation;
-use crate::point::{Motion, larger, largest};
-use crate::report::{Event, EventKind, Warning};
+use crate::point::{Motion, largest};
+use crate::report::{Event, Warning};
 use crate::settings::Feedback;
 use crate::system::System;
 
@@ -31,7 +31,7 @@ const SHOCK: f64 = 1e-3;
 /// The report of a resolution.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Resolved {
-    /// Kinetic energy lost in impacts [J].
+    /// Energy lost [J]: kinetic energy in impacts, and the energy that elastic links held when they broke.
     pub(crate) lost: f64,
     /// Impacts, in which a contact closed faster than the bounce speed; then the changes of modes.
     pub(crate) events: Vec<Event>,
@@ -61,7 +61,7 @@ impl<const D: usize> EventResolution<'_, D> {
         let at_first = modes.clone();
         let next_slip = self.next_slip(cause);
         if let Some(EventCause::Break(breakable)) = cause {
-            modes.broken[breakable] = true;
+            resolved.lost += self.break_link(modes, breakable);
         }
         let mut last = 0;
         for round in 0..ROUNDS {
@@ -118,7 +118,7 @@ impl<const D: usize> EventResolution<'_, D> {
         Impact::<D> { equation, system, touching: &touching, qd }.shock(modes, SHOCK * thresholds.frame)
     }
 
-    fn evaluate(&mut self) {
+    pub(super) fn evaluate(&mut self) {
         let motion = Motion::<D> { q: self.q, qd: self.qd, t: self.t };
         self.equation.apply_forces(self.system, motion);
         self.equation.constrain_all(self.system, motion);
@@ -129,13 +129,13 @@ impl<const D: usize> EventResolution<'_, D> {
     }
 
     /// The speed below which a flight under the applied forces is shorter than the rest time [m/s].
-    fn bounce_speed(&self) -> f64 {
+    pub(super) fn bounce_speed(&self) -> f64 {
         let strongest = largest(&self.equation.WQ);
         self.thresholds.shortest_flight.map_or(f64::INFINITY, |flight| 0.5 * flight * strongest)
     }
 
     /// Ċ of a contact: the speed at which it separates.
-    fn rate(&self, k: usize) -> f64 {
+    pub(super) fn rate(&self, k: usize) -> f64 {
         self.equation.rows.Cd[self.system.contacts.list[k].normal]
     }
 
@@ -163,93 +163,13 @@ impl<const D: usize> EventResolution<'_, D> {
     }
 
     /// A touching contact with its slip; a slip that is `stopping` counts as zero up to `STOPS` × the rest speed.
-    fn touching(&self, k: usize, may_stick: bool, stopping: bool) -> Touching {
+    pub(super) fn touching(&self, k: usize, may_stick: bool, stopping: bool) -> Touching {
         let tangents = &self.system.contacts.list[k].tangents;
         let slip = along(tangents.clone().map(|row| self.equation.rows.Cd[row]));
         let speed = size(slip);
         let rest_speed = if stopping { STOPS * self.rest_speed() } else { self.rest_speed() };
         let slip = (speed > rest_speed).then(|| slip.map(|component| component / speed));
         Touching { contact: k, slip, may_stick: may_stick || slip.is_none(), is_rough: !tangents.is_empty() }
-    }
-
-    /// The impact of the closing contacts on all that are near. A link whose impulse is above its strength breaks, and
-    /// the impact is taken without it: the one of them that is farthest above it, then the next.
-    fn collide(
-        &mut self,
-        modes: &mut Modes,
-        near: &[usize],
-        closing: &[usize],
-        resolved: &mut Resolved,
-    ) -> Result<(), NoConsistentModes> {
-        let before = self.qd.to_vec();
-        loop {
-            let is_whole = |k: &&usize| !modes.is_gone(&self.system.contacts.list[**k]);
-            let [near, closing] = [near, closing].map(|list| list.iter().filter(is_whole).copied().collect::<Vec<_>>());
-            if closing.is_empty() {
-                return Ok(());
-            }
-            let (events, warnings) = (resolved.events.len(), resolved.warnings.len());
-            let lost = self.collide_once(modes, &near, &closing, resolved)?;
-            let Some((breakable, impulse)) = self.broken_by_impulse(modes) else {
-                resolved.lost += lost;
-                return Ok(());
-            };
-            resolved.events.truncate(events);
-            resolved.warnings.truncate(warnings);
-            let constraint = self.system.contacts.breakables[breakable].constraint;
-            resolved.events.push(Event { impulse, ..self.event(constraint, EventKind::Broke) });
-            modes.broken[breakable] = true;
-            self.qd.copy_from_slice(&before);
-            self.evaluate();
-        }
-    }
-
-    /// The link whose impulse is farthest above its strength, with the impulse [N·s].
-    fn broken_by_impulse(&self, modes: &Modes) -> Option<(usize, f64)> {
-        let breakables = self.system.contacts.breakables.iter().zip(&modes.broken).enumerate();
-        // Rods whose tensions have no meaning do not break.
-        let is_meant = |constraint: usize| !self.system.is_second_order(constraint);
-        let whole = breakables.filter(|(_, (breakable, broken))| !**broken && is_meant(breakable.constraint));
-        let carried = whole.map(|(number, (breakable, _))| {
-            let impulses = breakable.rows.clone().map(|row| self.equation.lambda[row].abs());
-            (number, impulses.fold(0.0, larger), breakable.impulse_limit)
-        });
-        let over = carried.filter(|(_, impulse, limit)| impulse > limit);
-        over.max_by(|(_, a, la), (_, b, lb)| (a / la).total_cmp(&(b / lb)))
-            .map(|(number, impulse, _)| (number, impulse))
-    }
-
-    /// The impact of closing contacts on those that are near, with the links that are whole. Returns the energy lost
-    /// [J].
-    fn collide_once(
-        &mut self,
-        modes: &Modes,
-        near: &[usize],
-        closing: &[usize],
-        resolved: &mut Resolved,
-    ) -> Result<f64, NoConsistentModes> {
-        let bounce_speed = self.bounce_speed();
-        let first = resolved.events.len();
-        let struck: Vec<usize> = closing.iter().copied().filter(|&k| -self.rate(k) > bounce_speed).collect();
-        for &k in &struck {
-            let speed = -self.rate(k);
-            resolved.events.push(self.event(self.system.contacts.list[k].constraint, EventKind::Impact { speed }));
-        }
-        let touching: Vec<Touching> = near.iter().map(|&k| self.touching(k, true, false)).collect();
-        let bounces: Vec<bool> = near.iter().map(|&k| -self.rate(k) > bounce_speed).collect();
-        let mut during = modes.clone();
-        for touching in touching.iter().filter(|touching| closing.contains(&touching.contact)) {
-            during.contacts[touching.contact] = touching.closed();
-        }
-        let EventResolution { equation, system, qd, .. } = self;
-        let lost = Impact::<D> { equation, system, touching: &touching, qd }.collide(&mut during, &bounces)?;
-        for (event, k) in resolved.events[first..].iter_mut().zip(struck) {
-            event.impulse = self.equation.lambda[self.system.contacts.list[k].normal];
-        }
-        if bounces.contains(&true) {
-            resolved.warnings.extend(self.shared(near));
-        }
-        Ok(lost)
     }
 
     /// Opens the contacts that separate faster than the bounce speed, after an impact the closed ones, too. Returns the

@@ -4,21 +4,24 @@
 //! |---|---|
 //! | the end of a curve | [`StepError::CurveEnds`] |
 //! | a gradient that jumps or is lost | [`StepError::NoGradient`] |
-//! | a drive at a dead centre, from which more than one motion follows it | [`StepError::Undecided`], at a start |
-//! | a drive that the other constraints do not follow | [`StepError::DriveBlocked`] |
+//! | a driven radius or length that shrinks to nothing | [`StepError::NoGradient`] |
+//! | a residual that jumps | [`StepError::Jumps`] |
+//! | a rate that jumps | [`StepError::RateJumps`] |
+//! | a drive that the other constraints do not follow | [`StepError::DriveBlocked`], [`StepError::DriveEnds`] |
 //! | a rate that no velocities bring to zero | [`StepError::RateNotSatisfied`], at a start |
 //! | none of these | [`StepError::NotSatisfied`], with the row that is off most |
 //!
-//! At a dead centre rows depend on each other, and a drive still asks for an acceleration along them: no q̈ satisfies
-//! J q̈ = −γ, although a free direction is left in which a velocity of the right size would.
+//! A dead centre, from which more than one motion follows a drive, has a file of its own: `dead_centre.rs`.
+//!
+//! A residual that jumps does so however short the substep is: halved again and again, towards the half in which C
+//! changes more, the change of C stays.
 
-use super::Workspace;
 use super::edges::Passage;
 use crate::constraint::{Constraint, Holds, NamedConstraint, Rows};
-use crate::drift::worst_row;
+use crate::drift::{attainable, worst_row};
 use crate::error::StepError;
-use crate::point::{Motion, block, larger, minus, norm};
-use crate::settings::Feedback;
+use crate::point::{Motion, block, largest, minus, norm};
+use crate::settings::Settings;
 use crate::space::ParticleId;
 use crate::state::State;
 use crate::system::System;
@@ -26,16 +29,6 @@ use crate::system::System;
 /// Length of an arm, relative to the extent of the system, below which a good motion counts as one without it. The last
 /// good motion ends before the length at which `edges.rs` counts an arm as lost, so this length is ten times as much.
 const NO_LENGTH: f64 = 1e-6;
-
-/// Part of the accelerations in a row by which J q̈ = −γ must be missed to count as a contradiction: A that is nearly
-/// singular leaves 1e-6 (`ACCEPTED_RESIDUAL` in `multiplier/factor.rs`).
-const CONTRADICTION: f64 = 1e-4;
-
-/// Number of free velocities that are tried; one would do for one free direction.
-const DIRECTIONS: usize = 4;
-
-/// A time after which a drive that stands still now has begun to move [s].
-const LATER: f64 = 1e-6;
 
 /// The error of a step from the last good state to a motion that was tried and passed an edge; `None` if it did not.
 pub(super) fn at_an_edge<const D: usize>(system: &System, state: &State, tried: Motion<'_, D>) -> Option<StepError> {
@@ -61,12 +54,111 @@ pub(super) fn at_an_edge<const D: usize>(system: &System, state: &State, tried: 
     Some(no_gradient(system, state.t, place, shorter.map(|(ends, _)| ends)))
 }
 
+/// Halvings of a substep in which a jump is sought: t and q then have no number in between.
+const HALVINGS: usize = 60;
+
 /// The error of the first arm that has no length at q.
 pub(super) fn without_length<const D: usize>(system: &System, time: f64, q: &[f64]) -> Option<StepError> {
     system.jumpy.iter().find_map(|&place| {
         let (ends, length) = shortest_arm::<D>(system, place, q)?;
         (length <= NO_LENGTH * system.extent).then(|| no_gradient(system, time, place, Some(ends)))
     })
+}
+
+/// The error of a driven radius, or of a rod of driven length, that shrinks to nothing between two times [s].
+pub(super) fn shrinks(system: &System, from: f64, to: f64) -> Option<StepError> {
+    let nothing = NO_LENGTH * system.extent;
+    system.jumpy.iter().find_map(|&place| {
+        let constraint = &system.constraints[place].constraint;
+        let at_end = constraint.least_size(to);
+        if at_end.is_nan() || at_end > nothing {
+            return None;
+        }
+        let (mut low, mut high) = (from, to);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if constraint.least_size(middle) <= at_end.max(0.0) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(no_gradient(system, high, place, constraint.arms().first().copied()))
+    })
+}
+
+/// The error of a residual that jumps between a state and the end of the shortest substep [s] from there.
+pub(super) fn jumps<const D: usize>(
+    system: &System,
+    settings: &Settings,
+    state: &State,
+    end: f64,
+) -> Option<StepError> {
+    let (row, residual, off) = discontinuity::<D>(system, state, end, |rows| &rows.C)?;
+    let row = system.row_names[row].clone();
+    let is_jump = off > attainable(system, settings, largest(&state.q));
+    is_jump.then_some(StepError::Jumps { time: state.t, row, residual })
+}
+
+/// The error of a rate that jumps there.
+pub(super) fn rate_jumps<const D: usize>(
+    system: &System,
+    settings: &Settings,
+    state: &State,
+    end: f64,
+) -> Option<StepError> {
+    let (row, rate, off) = discontinuity::<D>(system, state, end, |rows| &rows.Cd)?;
+    let row = system.row_names[row].clone();
+    // The roundoff of positions turns directions.
+    let relative = settings.tolerance.max(attainable(system, settings, largest(&state.q)));
+    let is_jump = off * system.extent > relative * largest(&state.qd);
+    is_jump.then_some(StepError::RateJumps { time: state.t, row, rate })
+}
+
+/// The largest change, over the scale of its row, of C or Ċ within the shortest time that numbers tell apart, between a
+/// state and `end` along its velocity: the row, the number after the change, and the change. `None` where it is not
+/// finite.
+fn discontinuity<const D: usize>(
+    system: &System,
+    state: &State,
+    end: f64,
+    of: fn(&Rows) -> &Vec<f64>,
+) -> Option<(usize, f64, f64)> {
+    let mut rows = system.rows_at::<D>(state);
+    let mut q = vec![0.0; state.q.len()];
+    let mut after = |s: f64| {
+        for (q, (x, v)) in q.iter_mut().zip(state.q.iter().zip(&state.qd)) {
+            *q = x + s * v;
+        }
+        system.evaluate_rows(Motion::<D> { q: &q, qd: &state.qd, t: state.t + s }, &mut rows);
+        let mut numbers = of(&rows).clone();
+        without_inactive(system, state, &mut numbers);
+        numbers
+    };
+    let change = |a: &[f64], b: &[f64]| {
+        let change: Vec<f64> = a.iter().zip(b).map(|(a, b)| b - a).collect();
+        worst_row(system, &change)
+    };
+    let (mut low, mut high) = (0.0, end - state.t);
+    let (mut at_low, mut at_high) = (after(low), after(high));
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let at_middle = after(middle);
+        if change(&at_low, &at_middle).1 >= change(&at_middle, &at_high).1 {
+            (high, at_high) = (middle, at_middle);
+        } else {
+            (low, at_low) = (middle, at_middle);
+        }
+    }
+    let (row, off) = change(&at_low, &at_high);
+    Some((row, *at_high.get(row)?, off)).filter(|_| off.is_finite())
+}
+
+/// Writes zeros for the inactive rows of a state, which are not held.
+pub(super) fn without_inactive(system: &System, state: &State, C: &mut [f64]) {
+    let mut inactive = vec![false; C.len()];
+    state.modes.write_inactive(&system.contacts, &mut inactive);
+    C.iter_mut().zip(inactive).filter(|(_, inactive)| *inactive).for_each(|(C, _)| *C = 0.0);
 }
 
 /// The shortest arm of a constraint that can change, and its length [m].
@@ -91,17 +183,18 @@ fn no_gradient(system: &System, time: f64, place: usize, ends: Option<[ParticleI
 
 /// The error of constraints that no positions near a motion that was tried satisfy; `rows` are those of that motion.
 pub(super) fn not_satisfied(system: &System, time: f64, rows: &Rows) -> StepError {
-    blocked(system, time, rows).unwrap_or_else(|| {
-        let (row, residual) = worst(system, rows);
-        StepError::NotSatisfied { time, row, residual }
-    })
+    let (row, residual) = worst(system, rows);
+    match drive_near(system, rows, worst_row(system, &rows.C).0) {
+        Some(drive) => StepError::DriveBlocked { time, drive, row, residual },
+        None => StepError::NotSatisfied { time, row, residual },
+    }
 }
 
-/// The same error where a drive is near the row that is off most.
-pub(super) fn blocked(system: &System, time: f64, rows: &Rows) -> Option<StepError> {
+/// The error of a drive that the other constraints follow in no substep, although every row is met; the drive near the
+/// row that is off most.
+pub(super) fn drive_ends(system: &System, time: f64, rows: &Rows) -> Option<StepError> {
     let drive = drive_near(system, rows, worst_row(system, &rows.C).0)?;
-    let (row, residual) = worst(system, rows);
-    Some(StepError::DriveBlocked { time, drive, row, residual })
+    Some(StepError::DriveEnds { time, drive })
 }
 
 /// The name of the row that is off most, and its C.
@@ -122,94 +215,9 @@ pub(super) fn unmet_rate(system: &System, time: f64, rows: &Rows, allowed: f64) 
     Some(StepError::RateNotSatisfied { time, row: system.row_names[row].clone(), rate: rows.Cd[row], drive })
 }
 
-/// The error of a state at which no accelerations satisfy the constraints, although some velocities would: a drive at a
-/// dead centre. `None` where it is not so.
-///
-/// ```text
-/// e = J q̈ + γ                             what the accelerations miss; zero in rows that are independent
-/// r = e − A⁻¹ J W Jᵀ e                    A⁻¹ over the independent rows, so Jᵀ r = 0 and r·γ = |e|²
-/// r·γ(v) − r·γ = vᵀ (Σ r_i ∂²C_i/∂q²) v   from rest, with a free velocity v: J v = 0
-/// ```
-///
-/// Where the last line is below zero, r·γ is zero at a velocity of some size along v, and accelerations then satisfy
-/// all rows.
-pub(super) fn undecided<const D: usize>(
-    system: &System,
-    state: &State,
-    workspace: &mut Workspace,
-) -> Option<StepError> {
-    if system.constraints.is_empty() {
-        return None;
-    }
-    let (m, soon) = (system.all_row_count(), later::<D>(system, state));
-    if soon.Ct.iter().all(|&Ct| Ct == 0.0) {
-        return None;
-    }
-    let equation = workspace.solve::<D>(system, state, &Feedback::NONE);
-    if equation.solver.dependent().is_empty() {
-        return None;
-    }
-    let (mut met, mut forces) = (vec![0.0; m], vec![0.0; m]);
-    equation.rows.J.multiply::<D>(&equation.qdd, &mut met);
-    equation.rows.J.multiply::<D>(&equation.WQ, &mut forces);
-    let gamma = equation.rows.gamma.clone();
-    let is_active = |row: usize| !equation.is_inactive(row) && system.softness[row].is_rigid();
-    let missed: Vec<f64> = (0..m).map(|row| if is_active(row) { met[row] + gamma[row] } else { 0.0 }).collect();
-    let largest = (0..m).map(|row| larger(gamma[row].abs(), forces[row].abs())).fold(0.0, larger);
-    let row = (0..m).find(|&row| missed[row].abs() > CONTRADICTION * largest)?;
-    let contradiction = without_force::<D>(system, workspace, missed);
-    let along = |gamma: &[f64]| contradiction.iter().zip(gamma).map(|(r, g)| r * g).sum::<f64>();
-    let at_rest = along(&gamma);
-    let bends_back = |seed: usize| {
-        let v = free_velocity::<D>(system, workspace, seed);
-        let mut rows = system.rows_at::<D>(state);
-        system.evaluate_rows(Motion::<D> { q: &state.q, qd: &v, t: state.t }, &mut rows);
-        let bend = along(&rows.gamma) - at_rest;
-        bend * at_rest < 0.0 && bend.abs() > CONTRADICTION * at_rest.abs()
-    };
-    if !(1..=DIRECTIONS).any(bends_back) {
-        return None;
-    }
-    Some(StepError::Undecided { time: state.t, drive: drive_near(system, &soon, row)? })
-}
-
-/// r = e − A⁻¹ J W Jᵀ e with Jᵀ r = 0, from e, which only rows that follow from others miss.
-fn without_force<const D: usize>(system: &System, workspace: &mut Workspace, mut missed: Vec<f64>) -> Vec<f64> {
-    let (equation, W) = (&mut workspace.equation, &system.inverse_mass);
-    let (mut moved, mut rates) = (vec![0.0; system.coordinate_count()], vec![0.0; system.all_row_count()]);
-    let mut held = vec![0.0; system.all_row_count()];
-    equation.rows.J.add_impulse::<D>(W, &missed, 1.0, &mut moved);
-    equation.rows.J.multiply::<D>(&moved, &mut rates);
-    equation.solver.solve(&system.matrix, &rates, &mut held);
-    missed.iter_mut().zip(&held).for_each(|(e, held)| *e -= held);
-    missed
-}
-
-/// A velocity v of the order of the extent a second with J v = 0, at the motion of the equation.
-fn free_velocity<const D: usize>(system: &System, workspace: &mut Workspace, seed: usize) -> Vec<f64> {
-    let mut v = vec![0.0; system.coordinate_count()];
-    for (k, v) in v.iter_mut().enumerate().filter(|(k, _)| system.inverse_mass[k / D] > 0.0) {
-        // Parts of multiples of the golden ratio are spread evenly, and the same everywhere.
-        *v = system.extent * (((k + 1) * seed) as f64 * 0.618_033_988_749_895).fract() - 0.5 * system.extent;
-    }
-    let equation = &mut workspace.equation;
-    let (mut rates, mut nu) = (vec![0.0; system.all_row_count()], vec![0.0; system.all_row_count()]);
-    equation.rows.J.multiply::<D>(&v, &mut rates);
-    equation.solver.solve(&system.matrix, &rates, &mut nu);
-    equation.rows.J.add_impulse::<D>(&system.inverse_mass, &nu, -1.0, &mut v);
-    v
-}
-
-/// The rows at the positions of a state, a little later: a drive that turns back has C_t = 0 for one moment.
-fn later<const D: usize>(system: &System, state: &State) -> Rows {
-    let mut rows = system.rows_at::<D>(state);
-    system.evaluate_rows(Motion::<D> { q: &state.q, qd: &state.qd, t: state.t + LATER }, &mut rows);
-    rows
-}
-
 /// The name of the constraint with the driven row that is nearest to a row, over particles that can move; that of the
 /// row itself if it is driven.
-fn drive_near(system: &System, rows: &Rows, row: usize) -> Option<String> {
+pub(super) fn drive_near(system: &System, rows: &Rows, row: usize) -> Option<String> {
     if rows.Ct.iter().all(|&Ct| Ct == 0.0) {
         return None;
     }

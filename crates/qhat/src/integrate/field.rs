@@ -159,7 +159,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         let drives = equation.drive_power(self.system, &self.feedback);
         let friction: f64 = equation.friction_power(motion.qd);
         Some(Power {
-            dissipation: energy::dissipation(self.system, motion) + friction,
+            dissipation: energy::dissipation(self.system, motion, &equation.broken) + friction,
             stabilization: constraint_power.sum::<f64>() - drives,
             drives,
         })

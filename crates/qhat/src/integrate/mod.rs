@@ -16,6 +16,7 @@
 
 mod adaptive;
 mod auto;
+mod dead_centre;
 mod edges;
 mod events;
 mod failure;
@@ -44,7 +45,8 @@ use crate::space::in_dimension;
 use crate::state::State;
 use crate::system::System;
 use adaptive::{dop853, dopri5, pair_frame};
-use failure::{at_an_edge, undecided, without_length};
+use dead_centre::undecided;
+use failure::{at_an_edge, without_length};
 use frame::Frame;
 
 /// Advances a state by one step of h (a fixed-step integrator) or one frame of h (an adaptive one).
@@ -198,7 +200,8 @@ pub(crate) fn consistent(system: &System, state: &State, settings: &Settings) ->
 /// Refuses a state whose kinetic or potential energy is not finite, with the name of a particle.
 pub(crate) fn check_energy(system: &System, state: &State) -> Result<(), StepError> {
     in_dimension!(system.dimension, D => {
-        energy::check_finite(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, state.t)
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+        energy::check_finite(system, motion, &state.modes.broken, state.t)
     })
 }
 

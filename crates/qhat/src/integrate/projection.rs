@@ -114,6 +114,10 @@ impl<const D: usize> Projector<'_, D> {
                 return Ok((before, iterations));
             }
         }
+        // The iteration goes on to half the tolerance, but what is within the tolerance is not off.
+        if self.off() <= self.settings.constraint_tolerance {
+            return Ok((before, MAX_ITERATIONS));
+        }
         Err(not_satisfied(system, self.t, &self.equation.rows))
     }
 

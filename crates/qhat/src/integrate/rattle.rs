@@ -140,7 +140,7 @@ impl<const D: usize> Stepper for RattleStepper<'_, '_, D> {
         if (Passage { system, rows, inactive, before, from, to }).is_barred() {
             return Outcome::Refused(Refusal::Edge);
         }
-        let (before, after) = (energy::dissipation(system, from), energy::dissipation(system, to));
+        let (before, after) = (energy::dissipation(system, from, &[]), energy::dissipation(system, to, &[]));
         // μ/h is the impulse where the substep begins, ν where it ends.
         let Workspace { equation, rattle: Scratch { mu, nu, Ct, .. }, .. } = &**workspace;
         let drives = energy::drive_power(system, Ct, mu) / h + energy::drive_power(system, &equation.rows.Ct, nu);

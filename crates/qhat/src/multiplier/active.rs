@@ -13,6 +13,7 @@ impl Equation {
     /// Takes the active rows and the sliding contacts from the modes. Nothing is factored for them yet.
     pub(crate) fn set_modes(&mut self, system: &System, modes: &Modes) {
         modes.write_inactive(&system.contacts, &mut self.inactive);
+        self.broken.clone_from(&modes.broken);
         self.sliding.clear();
         for (k, (contact, mode)) in system.contacts.list.iter().zip(&modes.contacts).enumerate() {
             if let Mode::Sliding(slip) = *mode {
@@ -32,11 +33,7 @@ impl Equation {
 
     /// Moves the feet of beads on to a motion that was kept, and writes them to the state.
     pub(crate) fn follow_feet<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>, feet: &mut Vec<f64>) {
-        if !system.bead_places.is_empty() {
-            self.rows.feet.follow(&system.beads(), motion);
-            feet.clear();
-            feet.extend_from_slice(self.rows.feet.parameters());
-        }
+        system.follow_feet(&mut self.rows, motion, feet);
     }
 
     /// Whether a row is inactive now.

@@ -114,7 +114,7 @@ impl Equation {
 
     /// Q and W Q.
     pub(crate) fn apply_forces<const D: usize>(&mut self, system: &System, motion: Motion<'_, D>) {
-        system.add_forces(motion, &mut self.Q);
+        system.add_forces(motion, &self.broken, &mut self.Q);
         for (i, &w) in system.inverse_mass.iter().enumerate() {
             for k in i * D..(i + 1) * D {
                 self.WQ[k] = w * self.Q[k];
@@ -219,7 +219,8 @@ impl Equation {
     /// λ = −(C/α + c Ċ) of soft rows.
     fn report_soft_rows(&mut self, system: &System) {
         for (row, soft) in system.softness.iter().enumerate().filter(|(_, soft)| !soft.is_rigid()) {
-            self.lambda[row] = -(self.rows.C[row] / soft.compliance + soft.damping * self.rows.Cd[row]);
+            let lambda = -(self.rows.C[row] / soft.compliance + soft.damping * self.rows.Cd[row]);
+            self.lambda[row] = if self.is_inactive(row) { 0.0 } else { lambda };
         }
     }
 }

@@ -57,6 +57,8 @@ pub(crate) struct Equation {
     pub(crate) qdd: Vec<f64>,
     /// For each row whether it is inactive; empty in a system without contacts.
     pub(crate) inactive: Vec<bool>,
+    /// For each breakable constraint whether it is broken; empty until modes are set.
+    pub(crate) broken: Vec<bool>,
     /// C and Ċ of every row, where those of inactive rows are zero in `rows`; empty in a system without contacts.
     pub(crate) gaps: Gaps,
     /// The sliding contacts, with their slips in the substep being tried.
@@ -100,6 +102,7 @@ impl Equation {
             Q_hat: vec![0.0; coordinates],
             qdd: vec![0.0; coordinates],
             inactive: vec![false; if system.contacts.is_empty() { 0 } else { m }],
+            broken: Vec::new(),
             gaps: Gaps::default(),
             sliding: Vec::new(),
             friction: Friction::default(),

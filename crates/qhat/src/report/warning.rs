@@ -71,6 +71,7 @@ impl Warning {
     pub(crate) fn is_like(&self, other: &Warning) -> bool {
         match (self, other) {
             (Warning::HandedOver { .. }, Warning::HandedOver { .. })
+            | (Warning::SharedImpact { .. }, Warning::SharedImpact { .. })
             | (Warning::BudgetSpent { .. }, Warning::BudgetSpent { .. }) => true,
             (
                 Warning::EnergyUnaccounted { energy, integrator, .. },
@@ -129,8 +130,9 @@ impl fmt::Display for Warning {
             ),
             Warning::SharedImpact { time, constraints: [one, other] } => write!(
                 f,
-                "`{one}` and `{other}` were struck at once at t = {time:.4} s, so they share the blow. Where it should \
-                 pass from one to the next, as in Newton's cradle, leave a gap of 1e-6 m between them"
+                "`{one}` and `{other}` were struck at once at t = {} s, so they share the blow. Where it should pass \
+                 from one to the next, as in Newton's cradle, leave a gap of 1e-6 m between them",
+                Seconds(*time)
             ),
             Warning::BudgetSpent { time, iterations, row, relative } => write!(
                 f,

@@ -155,7 +155,8 @@ impl Simulation {
     pub(super) fn change_forces(&mut self, change: impl FnOnce(&mut Vec<Force>)) {
         let potential = |system: &System, state: &State| {
             in_dimension!(system.dimension, D => {
-                energy::potential(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t })
+                let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
+                energy::potential(system, motion, &state.modes.broken)
             })
         };
         let before = potential(&self.system, &self.state);

@@ -155,7 +155,8 @@ impl Simulation {
         in_dimension!(self.system.dimension, D => {
             let motion = Motion::<D> { q: &self.state.q, qd: &self.state.qd, t: self.state.t };
             let mut force = vec![0.0; self.system.coordinate_count()];
-            for applied in self.system.all_forces().filter(|force| !matches!(force, Force::Gravity(_))) {
+            let acting = self.system.acting_forces(&self.state.modes.broken);
+            for applied in acting.filter(|force| !matches!(force, Force::Gravity(_))) {
                 applied.add(motion, &self.system.mass, &mut force);
             }
             let equation = self.workspace.solve::<D>(&self.system, &self.state, &feedback);

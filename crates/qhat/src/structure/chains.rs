@@ -255,15 +255,14 @@ fn chains(constraints: &[NamedConstraint], is_held: &[bool]) -> Option<Vec<Chain
             }
             return None;
         };
+        if rod.breaks_at.is_some() || rod.breaks_at_impulse.is_some() {
+            return None;
+        }
         if rod.compliance > 0.0 {
             // A compliant rod acts as a spring and has no row.
             continue;
         }
-        if rod.form != DistanceForm::Length
-            || rod.breaks_at.is_some()
-            || rod.breaks_at_impulse.is_some()
-            || (is_held[rod.a.0] && is_held[rod.b.0])
-        {
+        if rod.form != DistanceForm::Length || (is_held[rod.a.0] && is_held[rod.b.0]) {
             return None;
         }
         for end in [rod.a.0, rod.b.0] {

@@ -44,7 +44,7 @@ pub struct System {
     /// The names of the forces that the builder was given; forces that a simulation adds later have no place here.
     pub(crate) force_names: Vec<Option<String>>,
     /// Constraints that give way, as forces.
-    pub(crate) compliant: Vec<Force>,
+    compliant: Vec<Compliant>,
     pub(crate) feedback: Feedback,
     pub(crate) extent: f64,
     parameters: Parameters,
@@ -67,6 +67,14 @@ pub struct System {
     pub(crate) jumpy: Vec<usize>,
     /// The beads on curves, by their places among the constraints.
     pub(crate) bead_places: Vec<usize>,
+}
+
+/// A constraint that gives way, as the force that stands for it.
+#[derive(Clone, Debug)]
+struct Compliant {
+    force: Force,
+    /// Its index among the breakable constraints, if it is breakable.
+    breakable: Option<usize>,
 }
 
 impl System {
@@ -239,6 +247,15 @@ impl System {
         beads.collect()
     }
 
+    /// Moves the feet of beads in some rows on to a motion that was kept, and writes them to those of a state.
+    pub(crate) fn follow_feet<const D: usize>(&self, rows: &mut Rows, motion: Motion<'_, D>, feet: &mut Vec<f64>) {
+        if !self.bead_places.is_empty() {
+            rows.feet.follow(&self.beads(), motion);
+            feet.clear();
+            feet.extend_from_slice(rows.feet.parameters());
+        }
+    }
+
     pub(crate) fn empty_rows(&self) -> Rows {
         Rows::new(self.layout.clone(), self.dimension(), self.particle_count())
     }
@@ -273,22 +290,37 @@ impl System {
         }
     }
 
-    /// Q, the sum of all forces, with those of constraints that give way.
-    pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, Q: &mut [f64]) {
-        self.add_applied_forces(motion, Q);
-        for force in &self.compliant {
+    /// Q, the sum of all forces that act, with those of constraints that give way and are not broken; `broken` as in
+    /// [`System::acting_forces`].
+    pub(crate) fn add_forces<const D: usize>(&self, motion: Motion<'_, D>, broken: &[bool], Q: &mut [f64]) {
+        Q.fill(0.0);
+        for force in self.acting_forces(broken) {
             force.add(motion, &self.mass, Q);
         }
     }
 
-    /// All forces, with those of constraints that give way.
+    /// All forces, with those of constraints that give way, whether they are broken or not.
     pub(crate) fn all_forces(&self) -> impl Iterator<Item = &Force> {
-        self.forces.iter().chain(&self.compliant)
+        self.forces.iter().chain(self.compliant.iter().map(|compliant| &compliant.force))
+    }
+
+    /// The forces that act, with those of constraints that give way and are not broken. `broken` says of each breakable
+    /// constraint whether it is broken; none is if the list is empty.
+    pub(crate) fn acting_forces<'a>(&'a self, broken: &'a [bool]) -> impl Iterator<Item = &'a Force> {
+        let is_broken = |breakable: usize| broken.get(breakable).is_some_and(|&broken| broken);
+        let whole = self.compliant.iter().filter(move |compliant| !compliant.breakable.is_some_and(is_broken));
+        self.forces.iter().chain(whole.map(|compliant| &compliant.force))
+    }
+
+    /// The force that stands for a breakable constraint that gives way.
+    pub(crate) fn breakable_force(&self, breakable: usize) -> Option<&Force> {
+        let compliant = self.compliant.iter().find(|compliant| compliant.breakable == Some(breakable));
+        compliant.map(|compliant| &compliant.force)
     }
 
     /// A force by its place in `all_forces`.
     pub(crate) fn numbered_force(&self, number: usize) -> &Force {
-        self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()])
+        self.forces.get(number).unwrap_or_else(|| &self.compliant[number - self.forces.len()].force)
     }
 
     /// Writes the constraints, of which those from `given` on hold cliques, their rows, and the structure that follows
@@ -299,7 +331,6 @@ impl System {
         self.row_names.clear();
         self.row_scale.clear();
         self.softness.clear();
-        self.compliant.clear();
         for (name, constraint) in constraints {
             let first_row = self.row_names.len();
             match constraint.row_count(dimension) {
@@ -314,13 +345,18 @@ impl System {
             }
             self.row_scale.resize(self.row_names.len(), constraint.scale(self.extent));
             self.softness.resize(self.row_names.len(), constraint.softness());
-            self.compliant.extend(constraint.as_force());
             self.constraints.push(NamedConstraint { name, constraint, first_row });
         }
         self.layout = Layout::new(self.constraints.iter().map(|named| &named.constraint), dimension);
         self.following = self.following_rods.iter().map(|id| self.constraints[id.0].first_row as u32).collect();
         self.contacts = Contacts::new(&self.constraints, dimension);
         let constraints = self.constraints.iter().enumerate();
+        let breakables = &self.contacts.breakables;
+        let compliant = constraints.clone().filter_map(|(place, named)| {
+            let breakable = breakables.binary_search_by_key(&place, |breakable| breakable.constraint).ok();
+            Some(Compliant { force: named.constraint.as_force()?, breakable })
+        });
+        self.compliant = compliant.collect();
         self.jumpy =
             constraints.clone().filter(|(_, named)| named.constraint.may_jump()).map(|(place, _)| place).collect();
         let beads = constraints.filter(|(_, named)| matches!(named.constraint, Constraint::OnCurve(_)));

@@ -67,7 +67,7 @@ impl RowSums {
                 turning = turning.max(equation.rows.gamma[row].abs() / system.row_scale[row]);
             }
         }
-        for force in system.all_forces() {
+        for force in system.acting_forces(&equation.broken) {
             force.stiffness(motion, &mut |particle, stiffness, damper| {
                 rowsum[particle.0] += stiffness;
                 damping[particle.0] += damper;

@@ -1,8 +1,9 @@
 //! Adaptive methods: a frame in substeps whose length follows an error estimate.
 //!
-//! `substeps.rs` is the frame loop, the same for every method; a method is a [`Stepper`]. `control.rs` bounds the
-//! length of a substep. `pair.rs` is the stepper of embedded Runge–Kutta pairs, `pair_frame.rs` their frame. The other
-//! steppers are RATTLE (`integrate/rattle.rs`) and pairs with events (`integrate/events/`).
+//! `substeps/` is the frame loop, the same for every method; a method is a [`Stepper`]. `control.rs` bounds the length
+//! of a substep. `pair.rs` is the stepper of embedded Runge–Kutta pairs, `pair_frame.rs` their frame. The other
+//! steppers are RATTLE (`integrate/rattle.rs`), Radau IIA (`integrate/radau/`), and pairs with events
+//! (`integrate/events/`).
 
 mod acceptance;
 pub(crate) mod control;

@@ -30,8 +30,8 @@ pub(crate) fn step<const D: usize>(frame: &mut Frame<'_>, state: &State) -> Step
 /// work, with C_t where the step begins.
 pub(crate) fn work_of_step<const D: usize>(frame: &Frame<'_>, state: &State) -> StepWork {
     let Frame { system, workspace, length: h, .. } = frame;
-    let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
-    let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: state.t + h });
+    let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &[]);
+    let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: state.t + h }, &[]);
     let mut power = 0.0;
     for (k, force) in workspace.equation.Q_hat.iter().enumerate() {
         power += force * 0.5 * (state.qd[k] + workspace.qd[k]);

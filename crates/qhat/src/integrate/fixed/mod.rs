@@ -74,7 +74,7 @@ fn examine<const D: usize>(frame: &mut Frame<'_>, t: f64) -> Result<Drift, StepE
     check_finite::<D>(system, t, &workspace.q, &workspace.qd)?;
     let motion = Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: t + *h };
     // Velocities overflow in T long before they overflow themselves.
-    energy::check_finite(system, motion, t).map_err(|error| match error {
+    energy::check_finite(system, motion, &[], t).map_err(|error| match error {
         StepError::EnergyNotFinite { time, particle, .. } => StepError::NotFinite { time, particle },
         other => other,
     })?;

@@ -25,7 +25,7 @@ mod velocities;
 pub(crate) use newton::Base;
 
 use super::check_finite;
-use super::failure::{at_an_edge, not_satisfied, without_length};
+use super::failure::{at_an_edge, jumps, not_satisfied, shrinks, without_length};
 use super::frame::Frame;
 use crate::drift::{attainable, drift};
 use crate::energy;
@@ -211,8 +211,8 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
     fn keep(&mut self, state: &mut State, h: f64, projection: f64) {
         let Frame { system, workspace, .. } = &mut *self.frame;
         let Scratch { newton, base } = &*self.scratch;
-        let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: base.end });
-        let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t });
+        let after = energy::dissipation(system, Motion::<D> { q: &workspace.q, qd: &workspace.qd, t: base.end }, &[]);
+        let before = energy::dissipation(system, Motion::<D> { q: &state.q, qd: &state.qd, t: state.t }, &[]);
         // The rule of the end point is backward Euler's own; the trapezoidal rule is of second order.
         let has_second_order = self.formula.second.is_some();
         let mean = |before: f64, after: f64| if has_second_order { 0.5 * (before + after) } else { after };
@@ -244,16 +244,19 @@ impl<const D: usize> ImplicitStepper<'_, '_, D> {
     /// the worst row, or where all rows are met the particle with the largest acceleration.
     fn failure(&self, state: &State, ending: &Ending) -> StepError {
         let (system, time, workspace) = (self.frame.system, state.t, &*self.frame.workspace);
-        if let Some(error) = self.edge(state).or_else(|| without_length::<D>(system, time, &state.q)) {
+        let (end, settings) = (self.scratch.base.end, self.frame.settings);
+        let lost = || without_length::<D>(system, time, &state.q).or_else(|| shrinks(system, time, end));
+        if let Some(error) = self.edge(state).or_else(lost).or_else(|| jumps::<D>(system, settings, state, end)) {
             return error;
         }
         let rows = &workspace.equation.rows;
-        let within = attainable(system, self.frame.settings, largest(&workspace.q));
+        // An iteration goes on to half the tolerance, but what is within the tolerance is not off.
+        let within = attainable(system, settings, largest(&workspace.q)).max(settings.constraint_tolerance);
         if !rows.C.is_empty() && exceeds(ending.miss.relative, within) {
             return not_satisfied(system, time, rows);
         }
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: time };
-        match energy::most_accelerated(system, motion) {
+        match energy::most_accelerated(system, motion, &[]) {
             Some((particle, acceleration)) => {
                 StepError::RanAway { time, particle: system.particle_names[particle.0].clone(), acceleration }
             }

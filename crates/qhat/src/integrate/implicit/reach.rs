@@ -38,7 +38,7 @@ pub(super) fn check<const D: usize>(
     }
     let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
     let is_start = state.carry.is_none();
-    let pushed = energy::most_accelerated(system, motion).map_or(0.0, |(_, acceleration)| h * h * acceleration);
+    let pushed = energy::most_accelerated(system, motion, &[]).map_or(0.0, |(_, acceleration)| h * h * acceleration);
     let is_hidden = is_start && pushed > 0.0 && roundoff > HIDDEN * pushed;
     if roundoff <= COARSE * system.extent && !is_hidden {
         return Ok(());

@@ -17,21 +17,26 @@
 //! `factors.rs` its two factors. The factors stay for the next substep where the iteration converged quickly with them.
 //! A frame begins with factors of its own, so that a restart goes on with the same bits.
 //!
+//! Near a position where the rank of A drops, DOP853 goes on to the end of the frame: it crosses such a position
+//! without a stage near it (`adaptive/crossing.rs`), and finds the independent rows anew where they change.
+//!
 //! When it fails: no events are found, so a system with contacts is refused. Oscillations that must be followed cost
 //! more than with DOP853. Source: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4 and VII.6.
 
 mod factors;
+mod projection;
 mod saddle;
 mod stages;
 mod stepper;
 mod tableau;
 
-use super::adaptive::{End, Substeps};
+use super::adaptive::dop853::DOP853;
+use super::adaptive::{End, Substeps, pair_frame};
 use super::frame::Frame;
 use crate::error::StepError;
 use crate::report::{Solver, StepReport, Warning};
 use crate::settings::{Feedback, Integrator};
-use crate::state::State;
+use crate::state::{Carry, State};
 use crate::system::System;
 use factors::Factors;
 use saddle::Saddle;
@@ -74,10 +79,22 @@ impl Scratch {
 
 /// Advances the state by one frame.
 pub(crate) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) -> Result<StepReport, StepError> {
-    carry_on::<D>(frame, state, usize::MAX).map(|(report, _)| report)
+    let (start, length) = (state.t, frame.length);
+    let is_nearly_singular = state.carry.as_ref().is_some_and(|carry| carry.is_nearly_singular);
+    let (mut report, is_whole) = carry_on::<D>(frame, state, usize::MAX)?;
+    if !is_whole {
+        // A singular position is near. Velocities that were not projected in the last frame are projected beyond it.
+        let rest = length - (state.t - start);
+        state.carry = Some(Carry { substep: rest, is_nearly_singular, ..Carry::default() });
+        report.absorb(pair_frame::frame::<D>(&DOP853, &mut frame.over(rest), state)?);
+        // The parts add up to the frame only up to rounding.
+        state.t = start + length;
+    }
+    Ok(report)
 }
 
-/// Advances the state by one frame, or as far as `limit` substeps go; says whether the frame is whole.
+/// Advances the state by one frame, or as far as `limit` substeps go, or to where a singular position is near; says
+/// whether the frame is whole.
 pub(crate) fn carry_on<const D: usize>(
     frame: &mut Frame<'_>,
     state: &mut State,
@@ -104,12 +121,14 @@ pub(crate) fn carry_on<const D: usize>(
     };
     scratch.stages.rows.feet.clone_from(&frame.workspace.equation.rows.feet);
     scratch.saddle.leave_out(state.rank.as_ref().map_or(&[], |rank| &rank.dependent));
+    frame.workspace.equation.solver.memory.forget();
     substeps.report.solver = Solver::EndOfStep;
     let factorizations = scratch.factors.factorizations;
     let mut stepper = RadauStepper::<D> {
         system,
         settings,
         scratch: &mut scratch,
+        equation: &mut frame.workspace.equation,
         lambda,
         before,
         is_linearized: false,
@@ -119,6 +138,8 @@ pub(crate) fn carry_on<const D: usize>(
         was_rejected: false,
         convergence: Convergence::default(),
         error: 0.0,
+        gives_up: false,
+        sharpens: false,
     };
     let end = substeps.run(&mut stepper, state);
     let RadauStepper { lambda, before, .. } = stepper;
@@ -138,6 +159,7 @@ pub(crate) fn carry_on<const D: usize>(
         Ok(end) => end,
         Err(error) => return Err(substeps.fail(frame, error)),
     };
+    state.rank.clone_from(&frame.workspace.equation.rank);
     let report = substeps.finish(frame, state, None);
     if let Some(carry) = &mut state.carry {
         (carry.lambda, carry.collocation) = (lambda, before);

@@ -135,7 +135,7 @@ impl Stages {
         let Stages { f, q, qd, Q, rows, lambda, is_driven, .. } = self;
         let motion = Motion::<D> { q, qd, t };
         system.evaluate_rows(motion, rows);
-        system.add_forces(motion, Q);
+        system.add_forces(motion, &[], Q);
         let (forces, rates) = f[out].split_at_mut(saddle.velocities());
         for (force, id) in forces.chunks_exact_mut(D).zip(&saddle.particle) {
             force.copy_from_slice(&Q[id.0 * D..][..D]);

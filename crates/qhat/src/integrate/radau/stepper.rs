@@ -1,27 +1,17 @@
-//! One substep of Radau IIA: stages, error estimate, projection, and the next length.
+//! One substep of Radau IIA: stages, error estimate, and the next length; `projection.rs` is its projection.
 
 use super::Scratch;
-use super::stages::{Convergence, MOST_ITERATIONS, Stages, Step};
+use super::stages::{Convergence, MOST_ITERATIONS, Step};
 use super::tableau::{A, ESTIMATE, REAL, combine};
-use crate::drift::{Drift, attainable, drift, worst_row};
+use crate::drift::{Drift, drift};
 use crate::energy;
-use crate::integrate::adaptive::pair::{ERROR_SCALE, norm, reference_speed};
+use crate::integrate::adaptive::pair::{ERROR_SCALE, norm};
 use crate::integrate::adaptive::{Attempt, Outcome, Refusal, Stepper, accepts, accepts_move};
-use crate::integrate::edges::Passage;
-use crate::point::{Motion, largest};
+use crate::multiplier::{APPROACH, Equation};
+use crate::point::Motion;
 use crate::settings::Settings;
 use crate::state::{Collocation, State};
 use crate::system::System;
-
-/// Iterations of one projection. The constraints are off by the error of the step, and the factor belongs to its start:
-/// each iteration gains some two digits.
-const MOST_PROJECTIONS: usize = 8;
-
-/// Ratio of two residuals of a projection from which on a matrix of the end of the step takes its place.
-const DULL: f64 = 0.05;
-
-/// |Ċ|, relative to the speed of the fastest particle over the extent, below which it is roundoff.
-const CONSISTENT: f64 = 1e-13;
 
 /// Rate of convergence above which the next substep has a matrix of its own.
 const SLOW: f64 = 1e-3;
@@ -39,6 +29,15 @@ const CONVERGENT: f64 = 0.3;
 const GROWTH: f64 = 8.0;
 const SHRINKAGE: f64 = 0.1;
 
+/// Margin to a singular position above which none is within a substep: the sine of where the rank was noted, or more.
+const FAR: f64 = 1.0;
+
+/// Margin below which C is held to roundoff: what C is off by moves q̇ by as much over the square of the margin.
+const SHARP: f64 = 0.5;
+
+/// Part of a substep over which the margin is differenced.
+const LOOK_AHEAD: f64 = 0.01;
+
 /// Ratio of lengths up to which the polynomials of the last substep are a guess for the next.
 const ONWARDS: f64 = 3.0;
 
@@ -47,6 +46,8 @@ pub(super) struct RadauStepper<'a, const D: usize> {
     pub(super) system: &'a System,
     pub(super) settings: &'a Settings,
     pub(super) scratch: &'a mut Scratch,
+    /// The equation for accelerations, which tells how far a singular position is.
+    pub(super) equation: &'a mut Equation,
     /// λ at the start of the substep, by the rows of the system.
     pub(super) lambda: Vec<f64>,
     /// What the last substep left for the next.
@@ -64,6 +65,10 @@ pub(super) struct RadauStepper<'a, const D: usize> {
     pub(super) convergence: Convergence,
     /// The error of the substep tried last.
     pub(super) error: f64,
+    /// Whether the motion is near a position where the rank of A drops, which this method does not cross.
+    pub(super) gives_up: bool,
+    /// Whether the motion is so near to one that C is held to roundoff.
+    pub(super) sharpens: bool,
 }
 
 impl<const D: usize> Stepper for RadauStepper<'_, D> {
@@ -75,7 +80,30 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
         f64::INFINITY
     }
 
+    /// Looks for a singular position. All three stages of a substep across it would be near it, and the corrections of
+    /// a projection are divided by its distance.
+    fn across(&mut self, state: &State, h: f64, remaining: f64) -> Option<f64> {
+        if self.system.row_count() == 0 {
+            return None;
+        }
+        self.equation.place_feet::<D>(self.system, state);
+        let here = self.margin_after(state, 0.0);
+        self.sharpens = here.is_some_and(|here| here < SHARP);
+        self.gives_up = match here {
+            Some(here) if here >= FAR => false,
+            Some(here) if here >= APPROACH => {
+                let next = self.margin_after(state, LOOK_AHEAD * h).unwrap_or(0.0);
+                here - (here - next) * (h.min(remaining) / (LOOK_AHEAD * h)) < APPROACH
+            }
+            _ => true,
+        };
+        None
+    }
+
     fn attempt(&mut self, state: &State, h: f64, end: f64) -> Outcome {
+        if self.gives_up {
+            return Outcome::Singular;
+        }
         let step = Step { system: self.system, settings: self.settings, state, h, end };
         if !self.solve(&step) {
             return Outcome::NotMet;
@@ -96,7 +124,13 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
         tried_qd.copy_from_slice(&stages.qd);
         match self.project(&step) {
             Some(_) if self.passes_an_edge(&step) => Outcome::Refused(Refusal::Edge),
-            Some(_) if !accepts_move(self.moved(h), self.settings) => Outcome::Refused(Refusal::Jump),
+            Some(_) if !accepts_move(self.moved(h), self.settings) => {
+                // The error is about the motion that was projected.
+                let Scratch { stages, tried_q, tried_qd, .. } = &mut *self.scratch;
+                stages.q.copy_from_slice(tried_q);
+                stages.qd.copy_from_slice(tried_qd);
+                Outcome::Refused(Refusal::Jump)
+            }
             Some(iterations) => {
                 attempt.iterations += iterations;
                 Outcome::Met(attempt)
@@ -110,12 +144,8 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
         std::mem::swap(&mut state.q, &mut stages.q);
         std::mem::swap(&mut state.qd, &mut stages.qd);
         self.lambda.copy_from_slice(&stages.lambda);
-        if !self.system.bead_places.is_empty() {
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t + h };
-            stages.rows.feet.follow(&self.system.beads(), motion);
-            state.feet.clear();
-            state.feet.extend_from_slice(stages.rows.feet.parameters());
-        }
+        let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t + h };
+        self.system.follow_feet(&mut stages.rows, motion, &mut state.feet);
         let mut collocation = self.before.take().unwrap_or_default();
         collocation.stages.clear();
         stages.z.iter().for_each(|z| collocation.stages.extend(z));
@@ -164,6 +194,18 @@ impl<const D: usize> Stepper for RadauStepper<'_, D> {
 }
 
 impl<const D: usize> RadauStepper<'_, D> {
+    /// The margin to a singular position, a time s along the velocity; `None` where the rank has dropped.
+    fn margin_after(&mut self, state: &State, s: f64) -> Option<f64> {
+        let (system, q) = (self.system, &mut self.scratch.tried_q);
+        q.iter_mut().zip(state.q.iter().zip(&state.qd)).for_each(|(q, (x, v))| *q = x + s * v);
+        self.equation.constrain(system, Motion::<D> { q, qd: &state.qd, t: state.t + s });
+        self.equation.factor::<D>(system, 0.0);
+        if s == 0.0 {
+            self.equation.rank = self.equation.rank_to_keep::<D>(system);
+        }
+        self.equation.margin::<D>(system)
+    }
+
     /// Whether the matrix at hand served the last substep badly.
     fn is_slow(&self) -> bool {
         self.convergence.iterations > 2 && self.convergence.rate > SLOW
@@ -285,93 +327,13 @@ impl<const D: usize> RadauStepper<'_, D> {
         for i in 0..3 {
             stages.motion::<D>(step, saddle, i);
             let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.time(i) };
-            attempt.dissipation += step.h * A[2][i] * energy::dissipation(self.system, motion);
+            attempt.dissipation += step.h * A[2][i] * energy::dissipation(self.system, motion, &[]);
             if stages.is_driven {
                 self.system.evaluate_rows(motion, &mut stages.rows);
                 let power = energy::drive_power(self.system, &stages.rows.Ct, &stages.lambda);
                 attempt.drives += step.h * A[2][i] * power;
             }
         }
-    }
-
-    /// The way that the projection moved the motion, in the norm of the error estimate.
-    fn moved(&self, h: f64) -> f64 {
-        let Scratch { stages, tried_q, tried_qd, .. } = &*self.scratch;
-        let squares = |to: &[f64], from: &[f64]| to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
-        let squares = [squares(&stages.q, tried_q), squares(&stages.qd, tried_qd)];
-        norm(self.system, squares, reference_speed(self.system, largest(&stages.qd), h))
-    }
-
-    /// Whether the step leads over a place that no substep may pass.
-    fn passes_an_edge(&self, step: &Step<'_>) -> bool {
-        let (system, state) = (self.system, step.state);
-        if system.jumpy.is_empty() && system.bead_places.is_empty() {
-            return false;
-        }
-        let Stages { rows, q, qd, .. } = &self.scratch.stages;
-        let before = &system.rows_at::<D>(state).J.blocks;
-        let from = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-        let to = Motion::<D> { q, qd, t: step.end };
-        Passage { system, rows, inactive: &[], before, from, to }.is_barred()
-    }
-
-    /// Moves the last stage onto C = 0 and then Ċ = 0, in the metric of the step's own real matrix: a particle on a
-    /// stiff spring then hardly moves along it. Its iterations, or `None` if that was not possible.
-    fn project(&mut self, step: &Step<'_>) -> Option<usize> {
-        let (system, mut iterations, mut last) = (self.system, 0, f64::INFINITY);
-        self.is_ahead = false;
-        loop {
-            let Scratch { saddle, stages, rhs, .. } = &mut *self.scratch;
-            stages.evaluate_rows::<D>(system, step.end);
-            let off = worst_row(system, &stages.rows.C).1;
-            if off <= attainable(system, self.settings, largest(&stages.q)) {
-                break;
-            }
-            if off.is_infinite() || iterations == MOST_PROJECTIONS {
-                return None;
-            }
-            for (rhs, &row) in rhs[saddle.velocities()..].iter_mut().zip(&saddle.rows) {
-                *rhs = -stages.rows.C[row];
-            }
-            self.correct(step, off > DULL * last, |stages| &mut stages.q)?;
-            (last, iterations) = (off, iterations + 1);
-        }
-        last = f64::INFINITY;
-        for _ in 0..MOST_PROJECTIONS {
-            let Scratch { saddle, stages, rhs, .. } = &mut *self.scratch;
-            let mut off = 0.0_f64;
-            for (rhs, &row) in rhs[saddle.velocities()..].iter_mut().zip(&saddle.rows) {
-                let rate = stages.rows.J.multiply_row::<D>(row, &stages.qd) + stages.rows.Ct[row];
-                off = off.max(rate.abs() / system.row_scale[row]);
-                *rhs = -rate;
-            }
-            if off * system.extent <= CONSISTENT * largest(&stages.qd) {
-                break;
-            }
-            self.correct(step, off > DULL * last, |stages| &mut stages.qd)?;
-            last = off;
-        }
-        self.scratch.stages.evaluate_rows::<D>(system, step.end);
-        Some(iterations)
-    }
-
-    /// Solves for the right-hand side at hand, of the rows alone, and adds the solution to the positions or velocities
-    /// `of` the stage. If the matrix `is_dull`, a matrix of the end of the step is made first, once. `None` where it
-    /// cannot be factored.
-    fn correct(&mut self, step: &Step<'_>, is_dull: bool, of: fn(&mut Stages) -> &mut [f64]) -> Option<()> {
-        let Scratch { saddle, factors, stages, rhs, .. } = &mut *self.scratch;
-        if is_dull && !self.is_ahead {
-            let motion = Motion::<D> { q: &stages.q, qd: &stages.qd, t: step.end };
-            saddle.linearize(self.system, motion, &stages.rows, &stages.lambda);
-            (self.is_ahead, self.is_linearized, self.factored_for) = (true, false, None);
-            if !factors.factor_real::<D>(saddle, step.h) {
-                return None;
-            }
-        }
-        rhs[..saddle.velocities()].fill(0.0);
-        factors.solve(saddle, rhs);
-        saddle.add_to::<D>(rhs, of(stages));
-        Some(())
     }
 }
 

@@ -187,10 +187,8 @@ impl System {
                 }
             }
         }
-        if !self.compliant.is_empty() {
-            self.compliant.clear();
-            self.compliant.extend(self.constraints.iter().filter_map(|named| named.constraint.as_force()));
-        }
+        let soft = self.constraints.iter().filter_map(|named| named.constraint.as_force());
+        self.compliant.iter_mut().zip(soft).for_each(|(compliant, force)| compliant.force = force);
         self.contacts.renew(&self.constraints, self.dimension.number());
         if let Some(chains) = &mut self.chains {
             chains.renew(&self.constraints, &self.inverse_mass);

@@ -1,17 +1,17 @@
-//! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it.
+//! The frame loop: propose a substep, attempt it, judge it, reject it or accept and book it. `culprit.rs` finds the
+//! error of a frame whose shortest substep was not kept.
+
+mod culprit;
 
 use super::acceptance::{Refusal, accepts};
 use super::pace::{Pace, Steady};
 use super::{Attempt, Outcome, Stepper};
-use crate::drift::{Drift, attainable, worst_row};
+use crate::drift::Drift;
 use crate::energy;
 use crate::error::StepError;
-use crate::integrate::check_finite;
-use crate::integrate::failure::{at_an_edge, blocked, not_satisfied, without_length};
 use crate::integrate::frame::Frame;
 use crate::integrate::watch::TensionWatch;
 use crate::multiplier::APPROACH;
-use crate::point::{Motion, largest};
 use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::space::in_dimension;
@@ -26,10 +26,6 @@ const NEAR_EDGE: f64 = 1e-6;
 
 /// Part of the substep by which a substep that does not meet the constraints is tried again.
 const HALF: f64 = 0.5;
-
-/// Extents of the system over which an acceleration that has run away would carry a particle within a frame, far above
-/// those of stiff springs, whose substeps are merely many.
-const AWAY: f64 = 1e12;
 
 /// The place that a frame has come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,8 +99,8 @@ impl<'a> Substeps<'a> {
         let outcome = self.advance(method, state);
         method.end(state);
         outcome.map_err(|error| match error {
-            // Substeps without end are a symptom of a force without bound.
-            StepError::TooManySubsteps { .. } => self.runaway(state, AWAY).unwrap_or(error),
+            // Substeps without end are a symptom.
+            StepError::TooManySubsteps { .. } => self.culprit_of_many(state).unwrap_or(error),
             other => other,
         })
     }
@@ -232,58 +228,6 @@ impl<'a> Substeps<'a> {
             return Err(StepError::TooManySubsteps { time: state.t, max_substeps });
         }
         Ok(())
-    }
-
-    /// The error after the shortest substep was not kept: it names the edge that was passed, the particle of the tried
-    /// motion that is not finite, the row with the largest residual, or where all rows are met the particle with the
-    /// largest acceleration.
-    fn failure(&self, method: &impl Stepper, state: &State, end: f64, refusal: Option<Refusal>) -> StepError {
-        let mut tried = state.clone();
-        method.write_tried(&mut tried);
-        let (system, time) = (self.system, state.t);
-        in_dimension!(system.dimension, D => {
-            let motion = Motion::<D> { q: &tried.q, qd: &tried.qd, t: end };
-            let lost = || without_length::<D>(system, time, &state.q);
-            if let Some(error) = at_an_edge(system, state, motion).or_else(lost) {
-                return error;
-            }
-            if let Err(error) = check_finite::<D>(system, time, &tried.q, &tried.qd) {
-                return error;
-            }
-            let mut rows = system.rows_at::<D>(state);
-            system.evaluate_rows(motion, &mut rows);
-            let (worst, off) = worst_row(system, &rows.C);
-            let is_off = off > attainable(system, self.settings, largest(&tried.q));
-            match refusal {
-                Some(Refusal::Jump) if is_off => {
-                    let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
-                    return StepError::Jumps { time, row, residual };
-                }
-                Some(Refusal::Balance | Refusal::Jump) => return StepError::OutOfBalance { time },
-                None if is_off && off.is_finite() => return not_satisfied(system, time, &rows),
-                _ => {}
-            }
-            // Sums of finite numbers may overflow; then no particle is to blame more than another.
-            let first = || StepError::NotFinite { time, particle: system.first_moving() };
-            // A drive that reaches the end of its linkage asks for more and more, and no force is large.
-            let blocked = || blocked(system, time, &rows);
-            self.runaway(state, 1.0).or_else(blocked).or_else(|| self.runaway(state, 0.0)).unwrap_or_else(first)
-        })
-    }
-
-    /// The error that names the particle with the largest acceleration, if that would carry it over more than so many
-    /// extents of the system within a frame.
-    fn runaway(&self, state: &State, extents: f64) -> Option<StepError> {
-        in_dimension!(self.system.dimension, D => {
-            let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
-            let (particle, acceleration) = energy::most_accelerated(self.system, motion)?;
-            // A product that is not a number counts as too far.
-            if acceleration * self.length * self.length < extents * self.system.extent {
-                return None;
-            }
-            let particle = self.system.particle_names[particle.0].clone();
-            Some(StepError::RanAway { time: state.t, particle, acceleration })
-        })
     }
 
     /// Ends a frame that failed. The next frame, or the method that `auto` goes on with, needs the watch.
