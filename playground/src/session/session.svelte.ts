@@ -203,7 +203,8 @@ function withValues(parameters: readonly Parameter[], values: Values): number[] 
   for (const [name, value] of Object.entries(values)) {
     if (!parameters.some((parameter) => parameter.name === name)) {
       const names = parameters.map((parameter) => `“${parameter.name}”`).join(', ');
-      const known = names === '' ? 'this scene has no parameters' : `the parameters of this scene are ${names}`;
+      const known =
+        names === '' ? 'this scene has no parameters' : `the parameters of this scene are ${names}`;
       throw new Error(`No parameter is called “${name}”: ${known}.`);
     }
     if (Number.isNaN(value)) throw new Error(`The value of the parameter “${name}” is no number.`);

@@ -23,7 +23,7 @@ describe('the values of parameters in the address', () => {
   ])('%s%s gives %o', (search, hash, values) => expect(valuesInAddress({ search, hash })).toEqual(values));
 
   it('goes there and back', () => {
-    const values = { mu: 0.30000000000000004, 'ω': -1e-7 };
+    const values = { mu: 0.30000000000000004, ω: -1e-7 };
     const search = addressOf('a b', values);
     expect(sceneInAddress({ search, hash: '' })).toBe('a b');
     expect(valuesInAddress({ search, hash: '' })).toEqual(values);
