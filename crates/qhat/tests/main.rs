@@ -44,6 +44,7 @@ mod second_order;
 mod serde;
 mod share;
 mod share_random;
+mod signs;
 mod size;
 mod snapshot;
 mod softness;
