@@ -92,14 +92,14 @@ fn cases() -> Vec<Case> {
         (
             "ground with friction",
             || {
-                // Pushed to the right by less than the friction that holds.
+                // Pushed to the right by less than the friction that holds; the tangent points to the left.
                 reaction(|b| {
                     let weight = weight(b, [0.0, 0.0]);
                     b.force(PointForce::new(weight, [3.0, 0.0]));
                     Obstacle::new(weight, Surface::half_space([0.0, 1.0], 0.0)).with_friction(0.5).into()
                 })
             },
-            vec![W, -3.0],
+            vec![W, 3.0],
         ),
         (
             "motor",
@@ -157,13 +157,15 @@ fn cases() -> Vec<Case> {
 
 #[test]
 fn every_reaction_has_the_sign_of_the_table() {
+    let mut wrong = Vec::new();
     for (word, found, expected) in cases() {
         let found = found();
         assert_eq!(found.len(), expected.len(), "{word}: {found:?}");
-        for (found, expected) in found.iter().zip(&expected) {
-            assert!((found - expected).abs() <= ROUNDOFF * W, "{word}: {found} and not {expected}");
+        if found.iter().zip(&expected).any(|(found, expected)| (found - expected).abs() > ROUNDOFF * W) {
+            wrong.push(format!("{word}: {found:?} and not {expected:?}"));
         }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
