@@ -90,7 +90,8 @@ fn collect_places(value: &Value, place: String, places: &mut Vec<String>) {
 }
 
 /// Parts of messages about two keys that contradict each other. A schema cannot express such rules.
-const BETWEEN_KEYS: [&str; 70] = [
+const BETWEEN_KEYS: [&str; 71] = [
+    "the parameter `",
     " beyond what ",
     "the shortest length, the longest, or both",
     "must be more than the shortest",
