@@ -123,7 +123,7 @@ fn longer(frames: Frames, duration: Option<f64>) -> Result<Frames, String> {
     let count = (duration / frames.length()).round();
     let whole = Frames { duration, count: count as usize };
     // Frames of another length, by as much as a bit, would end at other times.
-    if !(count >= 1.0 && count <= super::frames::MOST) || whole.length().to_bits() != frames.length().to_bits() {
+    if !(1.0..=super::frames::MOST).contains(&count) || whole.length().to_bits() != frames.length().to_bits() {
         return Err(format!(
             "a duration of {duration} s has no whole number of its frames of {} s",
             qhat::Seconds(frames.length())
