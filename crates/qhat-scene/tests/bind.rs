@@ -131,9 +131,12 @@ fn parameters_have_a_value_a_range_and_a_unit() {
     assert_eq!(longer.state.positions()[2], 2.0 * (std::f64::consts::PI / 6.0).sin());
 }
 
+/// A piece of the scene, its replacement, the values that are set, and the beginning of the error.
+type Broken = (&'static str, &'static str, &'static [(&'static str, f64)], &'static str);
+
 #[test]
 fn what_no_parameter_can_be_is_refused_in_words() {
-    let cases: [(&str, &str, &[(&str, f64)], &str); 11] = [
+    let cases: [Broken; 11] = [
         ("", "", &[("l", 2.0)], "5:1: there is no parameter `l` to set | the parameters of this scene are `L` or `m`"),
         ("", "", &[("L", 7.0)], "6:5: the parameter `L` must be at least 0.1 and at most 5, but is 7 | "),
         ("", "", &[("m", f64::NAN)], "7:5: the parameter `m` must be a finite number, but is NaN | "),
