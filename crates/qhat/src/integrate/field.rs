@@ -9,7 +9,7 @@ use crate::chains::{Chains, Projected};
 use crate::drift::{Drift, attainable, drift, worst_row};
 use crate::energy;
 use crate::linalg::eight::{F8, LANES, Largest, vector_unit};
-use crate::multiplier::{APPROACH, Equation};
+use crate::multiplier::{APPROACH, Equation, Needed};
 use crate::point::{Motion, largest};
 use crate::settings::{Feedback, Settings};
 use crate::state::State;
@@ -152,7 +152,7 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         unpack(q, flat_q);
         unpack(qd, flat_qd);
         let motion = Motion::<D> { q: flat_q, qd: flat_qd, t };
-        equation.solve(self.system, motion, &self.feedback, self.is_factored);
+        equation.solve(self.system, motion, &self.feedback, self.is_factored, Needed::Accelerations);
         self.is_factored = false;
         pack(&equation.qdd, qdd);
         let constraint_power = equation.Q_hat.iter().zip(&*flat_qd).map(|(force, velocity)| force * velocity);

@@ -5,7 +5,7 @@
 
 use super::Workspace;
 use crate::constraint::Holds;
-use crate::multiplier::{Equation, RowsToShare, Share, Sticking};
+use crate::multiplier::{Equation, Needed, RowsToShare, Share, Sticking};
 use crate::point::Motion;
 use crate::settings::Feedback;
 use crate::space::in_dimension;
@@ -30,7 +30,7 @@ impl Workspace {
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         self.set_modes(system, state);
         let is_factored = feedback.diagonal_drag == 0.0 && self.is_factored_at(state);
-        self.equation.solve(system, motion, feedback, is_factored);
+        self.equation.solve(system, motion, feedback, is_factored, Needed::Forces);
         self.equation.solver.memory.forget();
         if feedback.diagonal_drag == 0.0 {
             self.note_factored(state);

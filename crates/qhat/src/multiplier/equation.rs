@@ -19,6 +19,10 @@ use std::sync::Arc;
 /// cantilever of ten bays, with a growth of a hundred, loses two of sixteen digits of its forces.
 const BALANCED: f64 = 10.0;
 
+/// The same in a stage of a step, which needs q̈ alone. A growth of 1e4 costs λ four digits, and Jᵀλ two of them: what
+/// is left is below the least error that a tolerance can ask for, and the projection takes it up.
+const BALANCED_IN_A_STAGE: f64 = 1e4;
+
 /// Change of λ, relative, at which its refinement ends: the next would be smaller by as much again.
 const SETTLED: f64 = 1e-11;
 
@@ -41,6 +45,15 @@ const GROWN: f64 = 4.0;
 /// The largest sine of a rank that is noted; 1 stands for one that is not known.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
+/// What a solution of the equation is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Needed {
+    /// q̈, in a stage of a step.
+    Accelerations,
+    /// λ and Q̂, too, to be read or to decide about contacts.
+    Forces,
+}
+
 impl Equation {
     /// Solves the equation at one motion, everything from Q to q̈. `is_factored`: the factor of A + ε I at this q and
     /// t is at hand, and no new one is made.
@@ -50,6 +63,7 @@ impl Equation {
         motion: Motion<'_, D>,
         feedback: &Feedback,
         is_factored: bool,
+        needed: Needed,
     ) {
         let (W, s) = (&system.inverse_mass, 1.0 - feedback.elasticity);
         self.apply_forces(system, motion); // Q, W Q
@@ -64,7 +78,7 @@ impl Equation {
         reaction::accelerations::<D>(W, &self.Q, &self.Q_hat, &mut self.qdd); // q̈ = W (Q + Q̂)
         if !self.sliding.is_empty() {
             reaction::add_accelerations::<D>(W, &self.friction.force, &mut self.qdd); // q̈ += W F
-        } else if self.solver.growth() > BALANCED {
+        } else if self.solver.growth() > if needed == Needed::Forces { BALANCED } else { BALANCED_IN_A_STAGE } {
             self.balance::<D>(system, s);
         }
         self.report_soft_rows(system); // λ of soft rows, whose forces are in Q already

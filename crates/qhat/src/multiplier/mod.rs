@@ -25,7 +25,7 @@ mod sticking;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use equation::APPROACH;
+pub(crate) use equation::{APPROACH, Needed};
 pub(crate) use factor::MultiplierSolver;
 pub(crate) use friction::{Friction, Sliding};
 pub(crate) use independent::SAME;

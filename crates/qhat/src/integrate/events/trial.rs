@@ -5,6 +5,7 @@ use crate::contact::{EventFunctions, rest_speed};
 use crate::integrate::Workspace;
 use crate::integrate::adaptive::{Attempt, Outcome, Stepper, accepts};
 use crate::modes::Mode;
+use crate::multiplier::Needed;
 use crate::point::Motion;
 use crate::settings::Feedback;
 use crate::state::State;
@@ -66,7 +67,7 @@ impl<const D: usize> EventStepper<'_, D> {
         let is_closed = modes.contacts.iter().any(|mode| mode.is_closed());
         let may_break = modes.broken.iter().any(|broken| !broken);
         if is_closed || may_break {
-            equation.solve(system, motion, &Feedback::NONE, true);
+            equation.solve(system, motion, &Feedback::NONE, true, Needed::Forces);
         }
         let solved = equation.lambda.clone();
         equation.spread_over_contacts::<D>(system);
