@@ -133,6 +133,8 @@ impl Simulation {
     /// As [`Simulation::new`], if the settings changed to ones under which the start cannot be made consistent.
     pub fn reset(&mut self) -> Result<(), StepError> {
         self.release();
+        // Rows that followed from others where the motion was need not follow at the start.
+        self.workspace = self.workspace.renewed(&self.system);
         self.state = self.start.clone();
         self.begin()
     }
