@@ -59,7 +59,8 @@ pub(crate) struct Parameters {
 fn parameter(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("a parameter is set as in a=0.2")?;
     let number = value.trim().parse().map_err(|_| format!("`{value}` is no number, as 0.2 and 1e-3 are"))?;
-    Ok((name.trim().to_owned(), number))
+    let name = name.trim();
+    if name.is_empty() { Err("a name stands before the =, as in a=0.2".into()) } else { Ok((name.to_owned(), number)) }
 }
 
 #[derive(Args, Debug)]
@@ -153,7 +154,7 @@ pub(crate) struct Render {
     pub(crate) at: Option<f64>,
 
     /// Draw a frame of this trajectory of the scene (.npz), as `qhat run -o` writes it, and simulate nothing
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "at")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["at", "set"])]
     pub(crate) from: Option<PathBuf>,
 
     /// The frame of the trajectory, counted from 0 [default: the last]

@@ -1,6 +1,6 @@
 //! `--from` and `--checkpoint`: a run that stopped goes on to the bytes of a run that did not.
 
-use crate::common::{BREAKS, Folder, INFEASIBLE, PENDULUM, QHAT};
+use crate::common::{BREAKS, Folder, INFEASIBLE, PENDULUM, QHAT, npz};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
@@ -40,8 +40,47 @@ fn a_longer_run_goes_on_from_a_complete_one() {
     folder.qhat(&["run", "--from", "part.npz", "--duration", "1.5", "-o", "more.npz"]).well();
     folder.qhat(&["run", "--from", "more.npz", "--duration", "3"]).well();
     assert!(bytes(&folder, "more.npz") == bytes(&folder, "whole.npz"));
-    folder.qhat(&["run", "--from", "more.npz"]).refused("its run of 3 s is complete; ask for a longer one");
-    folder.qhat(&["run", "--from", "more.npz", "--duration", "3.001"]).refused("no whole number of its frames");
+    folder.qhat(&["run", "--from", "more.npz"]).refused("it has reached t = 3 s; ask for more with --duration");
+    folder.qhat(&["run", "--from", "more.npz", "--duration", "3.001"]).refused("is no whole number of its frames");
+}
+
+/// Frames of h have the same length whatever the duration, so the longer run has the same motion. Only the times of its
+/// frames, i · duration / N, may differ in their last bit.
+#[test]
+fn a_run_of_any_duration_goes_on_with_the_same_motion() {
+    let folder = Folder::with(&[("heap.toml", HEAP)]);
+    folder.qhat(&["run", "heap.toml", "-o", "whole.npz", "--duration", "10"]).well();
+    let whole = npz::read(&folder.path("whole.npz"));
+    for short in ["0.7", "0.29", "2.3"] {
+        folder.qhat(&["run", "heap.toml", "-o", "part.npz", "--duration", short, "--force"]).well();
+        folder.qhat(&["run", "--from", "part.npz", "--duration", "10"]).well();
+        let longer = npz::read(&folder.path("part.npz"));
+        for name in ["positions", "velocities", "multipliers"] {
+            assert!(longer[name] == whole[name], "{name} from {short} s");
+        }
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_run_goes_on() {
+    let folder = Folder::with(&[("heap.toml", HEAP)]);
+    let run = ["run", "heap.toml", "--quiet", "--frames", "6000", "--duration", "60"];
+    folder.qhat(&[&run[..], &["-o", "whole.npz"]].concat()).well();
+    let before = folder.files();
+    let mut command = Command::new(QHAT);
+    command.current_dir(folder.root()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = command.args(run).args(["-o", "part.npz"]).spawn().unwrap();
+    // The command listens for Ctrl-C before it opens files.
+    while folder.files() == before {
+        std::thread::yield_now();
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    child.wait().unwrap();
+    let ended = folder.qhat(&["run", "--from", "part.npz", "--quiet"]);
+    // A fast machine may have been through.
+    assert!(ended.code == 0 || ended.stderr.contains("ask for more with --duration"), "{ended:?}");
+    assert!(bytes(&folder, "part.npz") == bytes(&folder, "whole.npz"));
 }
 
 #[test]
@@ -85,7 +124,7 @@ fn long_a_killed_run_goes_on_from_its_checkpoint() {
         }
         if folder.path("cut.npz").exists() {
             let ended = folder.qhat(&["run", "--from", "cut.npz", "--quiet"]);
-            assert!(ended.code == 0 || ended.stderr.contains("is complete"), "{ended:?}");
+            assert!(ended.code == 0 || ended.stderr.contains("ask for more with --duration"), "{ended:?}");
         } else {
             // A slow machine was killed before its first checkpoint each time.
             folder.qhat(&[&run[..], &["-o", "cut.npz", "--checkpoint", interval]].concat()).well();
@@ -115,15 +154,21 @@ fn what_cannot_go_on_is_refused_in_words() {
     let whole = bytes(&folder, "bob.npz");
     std::fs::write(folder.path("cut.npz"), &whole[..whole.len() / 2]).unwrap();
     from("cut.npz", &[]).refused("`cut.npz` is no trajectory that `qhat run -o run.npz` writes");
-    let place = whole.windows(8).position(|bytes| bytes == b"qhatrun\x01").unwrap();
+    let place = whole.windows(8).position(|bytes| bytes == b"qhatrun\x02").unwrap();
+    let mut changed = whole.clone();
+    changed[place + 40] ^= 1;
+    std::fs::write(folder.path("changed.npz"), changed).unwrap();
+    from("changed.npz", &[]).refused("cannot read `changed.npz`");
+    // Snapshots that differ in an archive whose checksums are right.
     let with = |offset: usize, byte: u8| {
-        let mut changed = whole.clone();
-        changed[place + offset] = byte;
-        std::fs::write(folder.path("changed.npz"), changed).unwrap();
+        let change = |snapshot: &mut Vec<u8>| {
+            let place = snapshot.windows(7).position(|bytes| bytes == b"qhatrun").unwrap();
+            snapshot[place + offset] = byte;
+        };
+        npz::rewrite(&folder.path("bob.npz"), &folder.path("changed.npz"), "snapshot", &change);
+        from("changed.npz", &[])
     };
-    with(7, 9);
-    from("changed.npz", &[]).refused("changed.npz");
-    with(40, whole[place + 40] ^ 1);
-    from("changed.npz", &[]).refused("changed.npz");
+    with(7, 9).refused("cannot go on from `changed.npz`: its snapshot has version 9, and this qhat reads version 2");
+    with(0, b'Q').refused("cannot go on from `changed.npz`: its snapshot is damaged");
     assert!(bytes(&folder, "bob.npz") == whole);
 }

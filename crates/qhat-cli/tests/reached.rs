@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, PENDULUM};
 use std::fs::{File, FileTimes};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, SystemTime};
 
@@ -83,24 +83,41 @@ fn files_of_killed_runs_are_removed_and_those_of_others_stay() {
     assert_eq!(left, [".qhat-held.part", ".qhat-young.part"]);
 }
 
-/// On a full disk the frames that fit are kept. Skipped, with a word, where the test may not mount a file system.
+/// A folder on a disk of 256 KiB; `None`, with a word, where the test may not mount a file system.
+struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    fn new(path: PathBuf) -> Option<Self> {
+        std::fs::create_dir_all(&path).unwrap();
+        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", "size=256k", "tmpfs"]).arg(&path).status();
+        if mounted.is_ok_and(|status| status.success()) {
+            Some(SmallDisk(path))
+        } else {
+            eprintln!("not run: this user may not mount a file system");
+            None
+        }
+    }
+
+    fn files(&self) -> usize {
+        std::fs::read_dir(&self.0).unwrap().count()
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
 #[test]
 fn a_full_disk_keeps_what_fits() {
     let folder = Folder::with(&[("bob.toml", PENDULUM)]);
     // At 15 s the arrays of the NPZ fit, and the zip beside them does not.
     for (output, duration) in [("bob.csv", "100"), ("bob.npz", "100"), ("bob.npz", "15")] {
-        let disk = folder.path("disk");
-        std::fs::create_dir_all(&disk).unwrap();
-        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", "size=256k", "tmpfs"]).arg(&disk).status();
-        if !mounted.is_ok_and(|status| status.success()) {
-            eprintln!("not run: this user may not mount a file system");
-            return;
-        }
+        let Some(disk) = SmallDisk::new(folder.path("disk")) else { return };
         let path = format!("disk/{output}");
         let ran = folder.qhat(&["run", "bob.toml", "--duration", duration, "-o", &path]);
         let bytes = std::fs::read(folder.path(&path)).unwrap_or_default();
-        let left = std::fs::read_dir(&disk).unwrap().count();
-        assert!(Command::new("umount").arg(&disk).status().unwrap().success());
         assert_eq!(ran.code, 2, "{}", ran.stderr);
         assert!(ran.stderr.starts_with("interrupted: cannot write"), "{}", ran.stderr);
         assert!(bytes.len() > 50_000, "{output}: {} bytes are kept", bytes.len());
@@ -111,6 +128,30 @@ fn a_full_disk_keeps_what_fits() {
         } else {
             assert!(bytes.starts_with(b"PK"));
         }
-        assert!(left <= 2, "no temporary file is left: {left}");
+        assert!(disk.files() <= 2, "no temporary file is left");
     }
+}
+
+/// A longer run that does not fit leaves the file that it goes on from, or its last checkpoint.
+#[test]
+fn a_full_disk_keeps_the_file_of_before() {
+    let folder = Folder::with(&[("bob.toml", PENDULUM)]);
+    let Some(disk) = SmallDisk::new(folder.path("disk")) else { return };
+    let bytes = || std::fs::read(folder.path("disk/bob.npz")).unwrap();
+    let kept = "the file of before is kept";
+    folder.qhat(&["run", "bob.toml", "-o", "disk/bob.npz"]).well();
+    let before = bytes();
+    // At 15 s the arrays fit, and at 100 s they do not.
+    for duration in ["15", "100"] {
+        folder.qhat(&["run", "--from", "./disk/bob.npz", "-o", "disk/bob.npz", "--duration", duration]).refused(kept);
+        assert!(bytes() == before);
+    }
+    std::fs::remove_file(folder.path("disk/bob.npz")).unwrap();
+    let arguments = ["run", "bob.toml", "-o", "disk/bob.npz", "--duration", "15", "--checkpoint", "100frames"];
+    folder.qhat(&arguments).refused(kept);
+    assert_eq!(disk.files(), 1, "no temporary file is left");
+    folder.qhat(&["run", "--from", "disk/bob.npz", "-o", "rest.npz"]).well();
+    folder.qhat(&["run", "bob.toml", "-o", "whole.npz", "--duration", "15"]).well();
+    let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    assert!(read("rest.npz") == read("whole.npz"));
 }

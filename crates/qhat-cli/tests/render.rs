@@ -55,6 +55,16 @@ fn a_later_time_is_the_frame_that_a_run_writes() {
     // scale of 20 N this is step 11 of 20, √0.55 of the way from grey to blue.
     assert!(links[0].0.starts_with("rod hook-bob: 11.") && links[0].1 == "#3c71c5", "{links:?}");
 
+    // A trajectory has its own parameters.
+    let text =
+        PENDULUM.replace("mass = 2.0", "mass = \"m\"").replace("dimension = 2", "dimension = 2\nparameters.m = 2.0");
+    std::fs::write(folder.path("named.toml"), text).unwrap();
+    folder.qhat(&["run", "named.toml", "-o", "named.npz", "-q", "--set", "m=8"]).well();
+    folder.qhat(&["render", "named.toml", "-o", "a.svg", "--from", "named.npz", "--frame", "20"]).well();
+    folder.qhat(&["render", "named.toml", "-o", "b.svg", "--at", "0.2", "--set", "m=8"]).well();
+    assert_eq!(folder.read("a.svg"), folder.read("b.svg"));
+    assert_ne!(folder.read("a.svg"), at);
+
     folder.qhat(&["render", "bob.toml", "-o", "last.svg", "--from", "bob.npz"]).well();
     assert_eq!(drawn(&folder.read("last.svg")).1[1], "t = 0.5 s");
     // A time between two frames, and a time beyond the duration of the scene.

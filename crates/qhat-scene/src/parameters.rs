@@ -5,7 +5,7 @@ use crate::report::Report;
 use crate::suggest::{listed, nearest};
 use crate::tree::{Entry, Node, Step, Value};
 use qhat::{Expression, ExpressionError, Parameter};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// The parameters of a scene by name, in the order of the text. Those that have no number are left out; `check` refuses
@@ -14,7 +14,8 @@ use std::ops::Range;
 pub(crate) struct Parameters<'a> {
     names: Vec<&'a str>,
     values: Vec<f64>,
-    place: Range<usize>,
+    /// The places where texts below `[parameters]` begin.
+    texts: HashSet<usize>,
 }
 
 /// A number of the scene that is given by a text, and the place of that text.
@@ -28,7 +29,7 @@ impl<'a> Parameters<'a> {
     pub(crate) fn of(tree: &'a Node) -> Self {
         let mut parameters = Parameters::default();
         let Some(table) = tree.get("parameters") else { return parameters };
-        parameters.place = table.span.clone();
+        parameters.texts = ways(table).into_keys().collect();
         for Entry { key, node, .. } in table.entries() {
             if let Value::Number(value) = node.key("value").value {
                 parameters.names.push(key);
@@ -38,9 +39,9 @@ impl<'a> Parameters<'a> {
         parameters
     }
 
-    /// Whether a place lies in the table of the parameters.
-    pub(crate) fn has(&self, place: &Range<usize>) -> bool {
-        self.place.start <= place.start && place.end <= self.place.end && !self.place.is_empty()
+    /// Whether a text lies in the table of the parameters. In TOML such a table need not be one piece of the scene.
+    pub(crate) fn has(&self, text: &Range<usize>) -> bool {
+        self.texts.contains(&text.start)
     }
 
     /// The expression of a text that names parameters.
@@ -102,8 +103,7 @@ fn parameter(name: &str, node: &Node) -> Parameter {
     Parameter { range, ..Parameter::new(name, 0.0) }
 }
 
-/// The ways to all values of a tree by the place where each begins. A table of TOML begins where its first key does;
-/// of two values that begin at one place the inner one counts.
+/// The ways to all texts of a tree by the place where each begins.
 pub(crate) fn ways(tree: &Node) -> HashMap<usize, Vec<Step<'_>>> {
     let mut ways = HashMap::new();
     let mut open = vec![(tree, Vec::new())];

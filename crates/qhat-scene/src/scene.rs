@@ -44,8 +44,8 @@ impl Source {
 
 impl Scene {
     /// Gives the parameters new values, one for each, in the order of [`System::parameters`]. Where all numbers that
-    /// change are those of parts ([`ParameterUse::is_bindable`](qhat::ParameterUse::is_bindable)), this takes
-    /// microseconds ([`System::bind`]); else the scene is built anew from its text. The bits are the same.
+    /// change are those of parts ([`ParameterUse::is_bindable`](qhat::ParameterUse::is_bindable)), the system that is
+    /// built takes them ([`System::bind`]); else the scene is built anew from its text. The bits are the same.
     ///
     /// ```
     /// let text = r#"

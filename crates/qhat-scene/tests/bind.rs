@@ -136,7 +136,7 @@ type Broken = (&'static str, &'static str, &'static [(&'static str, f64)], &'sta
 
 #[test]
 fn what_no_parameter_can_be_is_refused_in_words() {
-    let cases: [Broken; 11] = [
+    let cases: [Broken; 14] = [
         ("", "", &[("l", 2.0)], "5:1: there is no parameter `l` to set | the parameters of this scene are `L` or `m`"),
         ("", "", &[("L", 7.0)], "6:5: the parameter `L` must be at least 0.1 and at most 5, but is 7 | "),
         ("", "", &[("m", f64::NAN)], "7:5: the parameter `m` must be a finite number, but is NaN | "),
@@ -145,6 +145,24 @@ fn what_no_parameter_can_be_is_refused_in_words() {
         ("mass = \"m\"", "mass = \"2*\"", &[], "17:10: `mass` must be a number or an expression of parameters"),
         ("mass = \"m\"", "mass = \"t\"", &[], "17:9: `mass` must be a number or an expression of parameters"),
         ("m = 2.0", "m = \"2*L\"", &[], "7:5: `parameters[m]` must be a number or a table, but is the text `2*L`"),
+        (
+            "[parameters]\nL = { value = 1.0, min = 0.1, max = 5.0, unit = \"m\" }\nm = 2.0",
+            "[parameters.L]\nvalue = 1.0\nmax = \"m*3\"\n[parameters.m]\nvalue = 2.0",
+            &[],
+            "7:7: `max` must be a number, but is the text `m*3`",
+        ),
+        (
+            "[parameters]\nL = { value = 1.0, min = 0.1, max = 5.0, unit = \"m\" }\nm = 2.0",
+            "[parameters]\nL.value = \"m/2\"\nm = 2.0",
+            &[],
+            "6:11: `value` must be a number, but is the text `m/2`",
+        ),
+        (
+            "[parameters]\nL = { value = 1.0, min = 0.1, max = 5.0, unit = \"m\" }\nm = 2.0\n",
+            "parameters.L = 1.0\nparameters.m.value = \"L\"\n",
+            &[],
+            "6:22: `value` must be a number, but is the text `L`",
+        ),
         ("min = 0.1", "min = 3.0", &[], "6:1: the parameter `L` must be at least 3 and at most 5, but is 1 | "),
         ("min = 0.1", "min = 9.0", &[], "6:1: `min` of the parameter `L` is above `max` | exchange them"),
         ("min = 0.1", "mni = 0.1", &[], "6:20: unknown key `mni` in `parameters[L]` | did you mean `min`?"),

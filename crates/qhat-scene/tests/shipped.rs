@@ -154,12 +154,13 @@ fn toml_and_json_say_the_same() {
         let from_json = load(&text, "scene.json", Format::Json).unwrap_or_else(|errors| panic!("{errors}"));
         let from_toml = scene(shipped.name);
         let all = |scene: &Scene| {
-            // The lines in which numbers stand differ, and so does the text itself.
-            let uses: Vec<String> = scene.system.parameter_uses().iter().map(|it| it.text().to_owned()).collect();
-            let mut system = scene.system.clone();
-            system.forget_parameters();
-            let Scene { name, description, state, settings, duration, expect, .. } = scene;
-            format!("{name} {description} {system:?} {uses:?} {state:?} {settings:?} {duration} {expect:?}")
+            // The text itself differs.
+            let Scene { name, description, system, state, settings, duration, expect, .. } = scene;
+            let all = format!("{name} {description} {system:?} {state:?} {settings:?} {duration} {expect:?}");
+            // The lines in which numbers stand differ, too.
+            let mut pieces = all.split(" in line ");
+            let first = pieces.next().unwrap_or_default().to_owned();
+            pieces.fold(first, |all, piece| all + piece.trim_start_matches(|c: char| c.is_ascii_digit()))
         };
         assert_eq!(all(&from_json), all(&from_toml), "{}", shipped.name);
     }

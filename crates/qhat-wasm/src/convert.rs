@@ -248,7 +248,7 @@ pub(crate) fn target(components: &[f64]) -> [f64; 3] {
     std::array::from_fn(|k| components.get(k).copied().unwrap_or(0.0))
 }
 
-/// A parameter of a scene. A limit that there is not is null.
+/// A parameter of a scene. A missing limit is null.
 pub(crate) fn parameter(parameter: &qhat::Parameter) -> Record {
     let limit = |limit: f64| if limit.is_finite() { JsValue::from(limit) } else { JsValue::NULL };
     let [least, greatest] = parameter.range.map(limit);

@@ -114,7 +114,7 @@ impl Simulation {
     }
 
     /// Gives the parameters new values, one for each, and goes back to the start that follows from them, with the
-    /// settings of now and the forces of the scene. Throws `BindError`, `SceneErrors` or `StepError`; nothing is
+    /// settings and the forces of the scene. Throws `BindError`, `SceneErrors` or `StepError`; nothing is
     /// changed then.
     pub fn bind(&mut self, values: &[f64]) -> Result<(), JsValue> {
         let parameters = self.scene.system.parameters();
@@ -126,9 +126,7 @@ impl Simulation {
         checked.map_err(|cause| error("BindError", cause))?;
         let mut scene = self.scene.clone();
         scene.bind(values).map_err(|cause| error("SceneErrors", cause))?;
-        let settings = *self.inner.settings();
-        let inner = qhat::Simulation::new(scene.system.clone(), scene.state.clone(), settings);
-        self.inner = inner.map_err(|cause| error("StepError", cause))?;
+        self.inner = scene.simulation().map_err(|cause| error("StepError", cause))?;
         self.scene = scene;
         Ok(())
     }

@@ -19,7 +19,7 @@ use thiserror::Error;
 const MAGIC: &[u8; 4] = b"qhat";
 
 /// The version of the format. Any change of the types that are saved makes a new one.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The parts of a system that have a fingerprint each.
 const PARTS: [&str; 4] = ["particles", "constraints", "forces", "feedback"];
@@ -63,7 +63,7 @@ pub enum RestoreError {
     #[error("these bytes are damaged: they were cut or changed after they were saved")]
     Damaged,
     /// The bytes belong to a system that differs.
-    #[error("these bytes belong to another system: its {part} differ")]
+    #[error("these bytes belong to a system with other {part}")]
     Differs {
         /// The word `particles`, `constraints`, `forces` or `feedback`, in which numbers count, too.
         part: &'static str,
@@ -114,7 +114,8 @@ pub(crate) fn from_bytes<T: DeserializeOwned>(kind: Kind, system: &System, bytes
 
 impl State {
     /// The state as bytes, which [`State::from_bytes`] reads in another process, on any target, in the same version of
-    /// qhat. A run that goes on from there gives the same bits.
+    /// qhat. A run that goes on from there gives the same bits. The system is compared by the numbers of its parts;
+    /// functions of custom constraints and forces are not compared.
     pub fn to_bytes(&self, system: &System) -> Vec<u8> {
         to_bytes(Kind::State, system, self)
     }
@@ -141,18 +142,20 @@ impl State {
 
 /// Whether all arrays of a state have the lengths that its system asks for.
 pub(crate) fn fits(state: &State, system: &System) -> bool {
-    let (coordinates, rows) = (system.coordinate_count(), system.row_scale.len());
+    let (coordinates, rows) = (system.coordinate_count(), system.all_row_count());
     let motion = [&state.q, &state.qd].into_iter().all(|array| array.len() == coordinates);
     let modes = state.modes.contacts.len() == system.contacts.list.len()
         && state.modes.broken.len() == system.contacts.breakables.len();
     let feet = state.feet.is_empty() || state.feet.len() == system.bead_places.len();
+    // Readers compare the number of rows of a rank and of multipliers: a simulation may add rows for joints that rods
+    // hold only to second order.
     let rank = state.rank.as_ref().is_none_or(|rank| {
-        (rank.inactive.is_empty() || rank.inactive.len() == rows)
-            && rank.dependent.iter().all(|&row| (row as usize) < rows)
+        rank.rows != rows
+            || (rank.inactive.is_empty() || rank.inactive.len() == rows)
+                && rank.dependent.iter().all(|&row| (row as usize) < rows)
     });
     let carry = state.carry.as_ref().is_none_or(|carry| {
-        (carry.lambda.is_empty() || carry.lambda.len() == rows)
-            && carry.previous.as_ref().is_none_or(|it| [&it.q, &it.qd].iter().all(|array| array.len() == coordinates))
+        carry.previous.as_ref().is_none_or(|it| [&it.q, &it.qd].iter().all(|array| array.len() == coordinates))
     });
     motion && modes && feet && rank && carry
 }

@@ -145,6 +145,7 @@ pub fn evaluate(system: &System, state: &State) -> Terms {
 impl Workspace {
     /// Every symbol at a state. Integrators that project see the bare equation: their feedback is none.
     pub(crate) fn terms(&mut self, system: &System, state: &State, feedback: &Feedback) -> Terms {
+        self.follow(system);
         let tension = self.tension(system, state, feedback);
         let terms = collect(system, state, self.equation(), tension);
         let links = self.tension_is_unique(system);

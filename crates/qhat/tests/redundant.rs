@@ -4,8 +4,8 @@
 use crate::systems;
 use crate::systems::dense::largest;
 use qhat::{
-    Dimension, Distance, DistanceForm, Integrator, Nail, Particle, ParticleId, PointForce, Settings, Simulation, State,
-    System, evaluate,
+    Dimension, Distance, DistanceForm, HarmonicForce, Integrator, Nail, Particle, ParticleId, PointForce, Settings,
+    Simulation, State, System, evaluate,
 };
 
 fn under(integrator: Integrator, h: f64, tolerance: f64) -> Settings {
@@ -219,10 +219,10 @@ fn dopri5_passes_through_flat_at_any_tolerance() {
     }
 }
 
-/// Three cranks pass their flat position, where the last coupler follows from the other rows. A reset under another
-/// method moves as a new simulation does, and holds every rod.
+/// Three cranks pass their flat position, where Ċ hardly sees the velocity across the couplers. Methods that solve at
+/// the end of a step stay on their branch: the couplers keep the joints as far apart as the pivots, and parallel.
 #[test]
-fn a_reset_forgets_which_rows_followed_from_others() {
+fn implicit_steps_through_a_flat_position_keep_the_branch() {
     let (pivots, length) = ([0.0, 1.040_045_660_143_352_8, 1.870_406_390_836_729_2], 1.034_896_421_701_942_3_f64);
     let sine = 0.125_455_981_529_165_76 / length;
     let cosine = (1.0 - sine * sine).sqrt();
@@ -239,19 +239,30 @@ fn a_reset_forgets_which_rows_followed_from_others() {
         let coupler = Distance::new(joints[k], joints[k + 1], pivots[k + 1] - pivots[k]);
         builder.constraint(format!("coupler{k}"), coupler);
     }
+    let load = HarmonicForce {
+        particle: joints[1],
+        amplitude: [-0.0992, 0.00823, 0.0],
+        angular_frequency: 17.965,
+        phase: 3.2402,
+    };
+    builder.force(load);
     let (system, state) = builder.build().unwrap();
-    let first = Settings { integrator: Integrator::Dop853, tolerance: 1e-10, h: 0.032, ..Settings::default() };
-    for integrator in [Integrator::Bdf2, Integrator::Implicit, Integrator::Rattle, Integrator::Radau5] {
-        let second = Settings { integrator, h: 0.0064, tolerance: 1e-8, ..first };
-        let mut used = Simulation::new(system.clone(), state.clone(), first).unwrap();
-        (0..4).for_each(|_| drop(used.step().unwrap()));
-        used.set_settings(second).unwrap();
-        used.reset().unwrap();
-        let mut fresh = Simulation::new(system.clone(), state.clone(), second).unwrap();
-        for frame in 0..20 {
-            let reports = [&mut used, &mut fresh].map(|simulation| simulation.step().unwrap());
-            assert!(reports[0].max_residual <= 1e-9, "{integrator}, frame {frame}: {:e}", reports[0].max_residual);
-            assert_eq!(used.state(), fresh.state(), "{integrator}, frame {frame}");
+    for integrator in [Integrator::Bdf2, Integrator::Implicit] {
+        for steps in [10, 20, 40, 80] {
+            let settings = under(integrator, 0.128_445_769_748_427_75 / f64::from(steps), 1e-8);
+            let mut simulation = Simulation::new(system.clone(), state.clone(), settings).unwrap();
+            for step in 0..steps {
+                simulation.step().unwrap_or_else(|error| panic!("{integrator}, {steps} steps: {error}"));
+                let q = simulation.state().positions();
+                for (k, pair) in pivots.windows(2).enumerate() {
+                    let [joint, next] = [k, k + 1].map(|k| &q[4 * k + 2..4 * k + 4]);
+                    let [x, y] = [next[0] - joint[0] - (pair[1] - pair[0]), next[1] - joint[1]];
+                    let off = (x * x + y * y).sqrt();
+                    // Near flat, constraints that hold to 1e-10 leave the joints 1e-10 over the sine of a crank's
+                    // angle, which is 1e-4 in some step; the other branch is off by 2e-2 m.
+                    assert!(off <= 1e-6, "{integrator}, step {step} of {steps}, coupler {k}: off by {off:e} m");
+                }
+            }
         }
     }
 }

@@ -28,6 +28,17 @@ fn cases() -> Vec<(&'static str, System, State)> {
     builder.constraint("weak", Distance::new(bob, load, 1.0).breaking_at(25.0));
     builder.force(Gravity::new([0.0, -9.81]));
     cases.push(("driven", builder.build().unwrap()));
+    // Three joints in a line, which rods hold only to second order: a simulation adds rows.
+    let mut builder = System::builder(Dimension::Two);
+    let ends = [-1.0, 0.0, 1.0].map(|x| {
+        let joint = Particle::at(format!("at {x}"), [x, 0.0]);
+        builder.particle(if x == 0.0 { joint.fixed() } else { joint })
+    });
+    for (name, a, b, length) in [("left", 0, 1, 1.0), ("right", 1, 2, 1.0), ("both", 0, 2, 2.0)] {
+        builder.constraint(name, Distance::new(ends[a], ends[b], length));
+    }
+    builder.force(Gravity::new([0.3, -9.81]));
+    cases.push(("lever", builder.build().unwrap()));
     cases.into_iter().map(|(name, (system, state))| (name, system, state)).collect()
 }
 

@@ -22,9 +22,9 @@ export function valuesInAddress(address: { search: string; hash: string }): Valu
   return Object.fromEntries(pairs);
 }
 
-/** The address of a scene with the values that differ from its own. */
-export function addressOf(scene: string | null, values: Values): string {
+/** The address of a scene with the values that differ from its own; the path of the page where there are none. */
+export function addressOf(path: string, scene: string | null, values: Values): string {
   const parts = scene === null ? [] : [`scene=${encodeURIComponent(scene)}`];
   for (const [name, value] of Object.entries(values)) parts.push(`set=${encodeURIComponent(name)}=${value}`);
-  return `?${parts.join('&')}`;
+  return parts.length === 0 ? path : `?${parts.join('&')}`;
 }

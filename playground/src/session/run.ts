@@ -8,6 +8,14 @@ import { type Controls, defaultFrameWork, EngineError, Simulation, type StepRepo
  */
 const FRAME_WORK = 1_000_000;
 
+/** Limits the work of a frame, unless the scene has a limit of its own. */
+function limit(simulation: Simulation): void {
+  const controls = simulation.controls();
+  if (controls.frame_work === defaultFrameWork()) {
+    simulation.setControls({ ...controls, frame_work: FRAME_WORK });
+  }
+}
+
 export class Run {
   /** why the run stopped: the message of the engine; null while the run can go on */
   stopped: EngineError | null = null;
@@ -28,11 +36,7 @@ export class Run {
   /** Throws EngineError if the text is no scene. */
   static open(text: string, sourceName: string): Run {
     const simulation = new Simulation(text, sourceName);
-    const controls = simulation.controls();
-    // a limit in the scene is kept
-    if (controls.frame_work === defaultFrameWork()) {
-      simulation.setControls({ ...controls, frame_work: FRAME_WORK });
-    }
+    limit(simulation);
     return new Run(simulation);
   }
 
@@ -64,9 +68,10 @@ export class Run {
     }
   }
 
-  /** Gives the parameters of the scene new values, and goes to the start that follows from them. */
+  /** Gives the parameters of the scene new values, and goes to the start that follows from them, with its controls. */
   bind(values: readonly number[]): void {
     this.simulation.bind(values);
+    limit(this.simulation);
     this.stopped = null;
     this.report = null;
     this.balance = this.simulation.energy().balance;

@@ -62,6 +62,6 @@ export function spanOf(
   const from = min ?? Math.min(original < 0 || original === 0 ? -reach : 0, max === null ? 0 : max - reach);
   const to = max ?? Math.max(original > 0 || original === 0 ? reach : 0, from + reach);
   // a power of ten gives steps that a person can read
-  const step = 10 ** Math.floor(Math.log10(Math.max((to - from) / 100, Number.MIN_VALUE)));
+  const step = to > from ? 10 ** Math.floor(Math.log10((to - from) / 100)) : 1;
   return { kind: 'linear', from, to, step };
 }

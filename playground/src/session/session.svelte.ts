@@ -155,14 +155,25 @@ export class Session {
     const { run } = this;
     if (!run || !this.controls || !this.original) return;
     const changed = changes(this.original, this.controls);
+    const refuse = (error: unknown) => {
+      this.refusal = { key: `parameter-${name}`, message: messageOf(error) };
+    };
     try {
       run.bind(withValues(this.parameters, { [name]: value }));
+    } catch (error) {
+      refuse(error);
+      return;
+    }
+    this.refusal = null;
+    this.original = run.simulation.controls();
+    try {
+      run.simulation.setControls({ ...this.original, ...changed });
+    } catch (error) {
+      // a control that a person has changed does not go with the value
+      refuse(error);
+      run.bind(withValues(this.parameters, {}));
       this.original = run.simulation.controls();
       run.simulation.setControls({ ...this.original, ...changed });
-      this.refusal = null;
-    } catch (error) {
-      this.refusal = { key: `parameter-${name}`, message: messageOf(error) };
-      return;
     }
     this.parameters = run.simulation.parameters();
     this.structure = run.simulation.structure();
@@ -209,7 +220,7 @@ function withValues(parameters: readonly Parameter[], values: Values): number[] 
     }
     if (Number.isNaN(value)) throw new Error(`The value of the parameter “${name}” is no number.`);
   }
-  return parameters.map(({ name, value }) => values[name] ?? value);
+  return parameters.map(({ name, value }) => (Object.hasOwn(values, name) ? values[name] : value));
 }
 
 /** The controls that differ from the original ones. */

@@ -24,8 +24,9 @@ describe('the values of parameters in the address', () => {
 
   it('goes there and back', () => {
     const values = { mu: 0.30000000000000004, ω: -1e-7 };
-    const search = addressOf('a b', values);
+    const search = addressOf('/', 'a b', values);
     expect(sceneInAddress({ search, hash: '' })).toBe('a b');
     expect(valuesInAddress({ search, hash: '' })).toEqual(values);
+    expect(addressOf('/page/', null, {})).toBe('/page/');
   });
 });

@@ -49,4 +49,8 @@ describe('the slider of a parameter', () => {
     expect(span.step).toBeGreaterThan(0);
     expect((span.to - span.from) / span.step).toBeGreaterThanOrEqual(99.9);
   });
+
+  it('has a step where the least value is the greatest', () => {
+    expect(spanOf({ min: 2, max: 2 }, 2)).toEqual({ kind: 'linear', from: 2, to: 2, step: 1 });
+  });
 });

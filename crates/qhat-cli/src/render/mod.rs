@@ -39,13 +39,14 @@ pub(crate) fn render(arguments: &arguments::Render) -> Result<ExitCode, Failure>
     let output = Output::new(&arguments.output, &[], arguments.force)?;
     let source = Source::read(&arguments.scene)?;
     // A trajectory is drawn with the parameters that it was computed with.
-    let mut parameters = arguments.parameters.set.clone();
-    if let Some(path) = arguments.from.as_ref().filter(|_| parameters.is_empty()) {
-        parameters = Stored::open(path)?.parameters(&source.hash());
-    }
+    let mut stored = arguments.from.as_deref().map(Stored::open).transpose()?;
+    let parameters = match &mut stored {
+        Some(stored) => stored.parameters(&source.hash()),
+        None => arguments.parameters.set.clone(),
+    };
     let scene = source.load(&parameters).map_err(Failure::formatted)?;
-    let still = match &arguments.from {
-        Some(path) => Still::stored(&scene, &source, path, arguments.frame)?,
+    let still = match stored {
+        Some(stored) => Still::stored(&scene, &source, stored, arguments.frame)?,
         None => Still::simulated(&scene, arguments.at.unwrap_or(0.0), arguments.quiet)?,
     };
     let options = Options { size: arguments.size, dark: arguments.dark };

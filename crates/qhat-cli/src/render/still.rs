@@ -1,7 +1,7 @@
 //! The content of a picture: a state with its tensions, and the end of the run that led to it.
 
 use crate::failure::{Failure, warn};
-use crate::run::frames::{self, Frames, MOST};
+use crate::run::frames::{Frames, MOST};
 use crate::run::interrupt::Interrupt;
 use crate::run::progress::Progress;
 use crate::source::Source;
@@ -10,7 +10,6 @@ use crate::trajectory::Stored;
 use qhat::{Constraint, ParticleId, Seconds, Settings, Simulation, State, StepError, System, evaluate};
 use qhat_scene::Scene;
 use qhat_shapes::{Picture, Reading};
-use std::path::Path;
 
 /// A time within this part of a frame of the frame's end counts as that end. Both are quotients of decimals that a user
 /// typed, and differ by roundings of 1e-16 of a time.
@@ -59,9 +58,13 @@ impl Still {
     }
 
     /// A frame of a trajectory of the scene.
-    pub(super) fn stored(scene: &Scene, source: &Source, path: &Path, frame: Option<u64>) -> Result<Self, Failure> {
-        let system = &scene.system;
-        let mut stored = Stored::open(path)?;
+    pub(super) fn stored(
+        scene: &Scene,
+        source: &Source,
+        mut stored: Stored<'_>,
+        frame: Option<u64>,
+    ) -> Result<Self, Failure> {
+        let (system, path) = (&scene.system, stored.path());
         let frames = stored.frames()?;
         let frame = match frame {
             Some(frame) if frame < frames => frame,
@@ -107,7 +110,7 @@ struct Ending {
 
 /// Steps to a time \[s\], or as far as the motion goes.
 fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> Result<Ending, Failure> {
-    let length = scene.duration / frames::fitting(scene.duration, &scene.settings);
+    let length = Frames::new(scene.duration, None, &scene.settings)?.length;
     let count = (at / length).ceil();
     if count > MOST {
         return Err(Failure::input(format!("{at} s is {count:e} frames away, more than the {MOST:e} that qhat takes")));
@@ -116,7 +119,7 @@ fn advance(simulation: &mut Simulation, scene: &Scene, at: f64, quiet: bool) -> 
     let rest = at - whole * length;
     let rest = (rest > SAME * length).then_some(rest);
     let interrupt = Interrupt::watch()?;
-    let progress = Progress::new(Frames { duration: at, count: count as usize }, quiet);
+    let progress = Progress::new(Frames { duration: at, count: count as usize, length: at / count }, quiet);
     let lengths = std::iter::repeat_n(length, whole as usize).chain(rest);
     for (index, frame) in lengths.enumerate() {
         if interrupt.came() {

@@ -4,7 +4,7 @@ use crate::arguments::Interval;
 use crate::failure::{Failure, warn};
 use std::time::{Duration, Instant};
 
-/// The interval between checkpoints, and what has passed of it.
+/// The interval between checkpoints, and the frames and the time since the last one.
 pub(super) struct Checkpoints {
     interval: Interval,
     last: Instant,
@@ -20,16 +20,17 @@ impl Checkpoints {
     /// Counts a frame; whether a checkpoint is due after it.
     pub(super) fn are_due(&mut self) -> bool {
         self.frames += 1;
-        let is_due = match self.interval {
+        match self.interval {
             Interval::Frames(frames) => self.frames >= frames,
             Interval::Seconds(seconds) => {
                 self.last.elapsed() >= Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
             }
-        };
-        if is_due {
-            (self.frames, self.last) = (0, Instant::now());
         }
-        is_due
+    }
+
+    /// Begins the next interval, after a checkpoint was written: writing takes no part of it.
+    pub(super) fn begin(&mut self) {
+        (self.frames, self.last) = (0, Instant::now());
     }
 
     /// Tells once that a checkpoint could not be written.

@@ -30,12 +30,12 @@ use summary::{Summary, Tally};
 /// Simulates a scene as the arguments say.
 pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let began = Instant::now();
-    let Plan { source, scene, parameters, settings, frames, former } = Plan::of(arguments)?;
+    let mut before = arguments.from.as_deref().map(Stored::open).transpose()?;
+    let Plan { source, scene, parameters, settings, frames, former } = Plan::of(arguments, before.as_mut())?;
     let target = Plan::target(arguments)?;
     let output = target.as_ref().map(|target| target.path().display().to_string());
     // Ctrl-C is handled before the first file exists, so that no temporary file is left behind.
     let interrupt = Interrupt::watch()?;
-    let mut before = arguments.from.as_deref().map(Stored::open).transpose()?;
     let quantities = match (&before, &arguments.select) {
         (Some(before), _) => before.quantities(),
         (None, Some(selected)) => selected.to_vec(),
@@ -52,11 +52,12 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt, checkpoints };
     // In a CSV there is no place for events.
     job.tally.all_events = matches!(job.recorder, Some(Recorder::Npz(_))).then(Vec::new);
+    let snapshot =
+        |tally: &Tally, simulation: &Simulation| snapshot::bytes(&source, &parameters, frames, tally, simulation);
     let keep = |tally: &Tally, simulation: &Simulation| {
         let mut origin = origin.clone();
         origin.reach(tally);
-        let snapshot = snapshot::bytes(&source, &parameters, frames, tally, simulation)?;
-        Ok((serde_json::to_string(&origin).map_err(Failure::input)?, snapshot))
+        Ok((serde_json::to_string(&origin).map_err(Failure::input)?, snapshot(tally, simulation)?))
     };
     let (system, state) = (scene.system, scene.state);
     let begun = match former {
@@ -69,13 +70,13 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
             simulation
         }),
     };
-    let (stopped, snapshot) = match begun {
+    let (stopped, last) = match begun {
         Ok(mut simulation) => {
             let stopped = job.simulate(&mut simulation, &keep)?;
             // After an error or a frame that was not written, the state is not that of the last frame.
             let is_at_a_frame = matches!(stopped, None | Some(Stop::Interrupt));
             let is_kept = is_at_a_frame && job.recorder.is_some();
-            (stopped, if is_kept { Some(keep(&job.tally, &simulation)?.1) } else { None })
+            (stopped, if is_kept { Some(snapshot(&job.tally, &simulation)?) } else { None })
         }
         // Where no positions satisfy the constraints, the start is the only frame.
         Err(error) => {
@@ -94,8 +95,12 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
         let [whole, part] = [&origin, &shortened].map(serde_json::to_string);
         let (whole, part) = (whole.map_err(Failure::input)?, part.map_err(Failure::input)?);
         let events = job.tally.all_events.as_deref().unwrap_or_default();
-        if recorder.finish(&whole, &part, Extras { snapshot: snapshot.as_deref(), events })? == Kept::Part {
-            (origin, is_unwritten) = (shortened, true);
+        match recorder.finish(&whole, &part, Extras { snapshot: last.as_deref(), events })? {
+            Kept::Whole => {}
+            Kept::Part => (origin, is_unwritten) = (shortened, true),
+            Kept::Earlier => {
+                (origin, is_unwritten) = (origin.kept_earlier(output.as_deref().unwrap_or_default()), true);
+            }
         }
     }
     let summary = Summary::new(&origin, &job.tally, began.elapsed(), output);
@@ -110,7 +115,7 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
     Ok(if is_unwritten { ExitCode::from(BAD_INPUT) } else { origin.status.exit_code() })
 }
 
-/// What is to be simulated, from the start or from a former run.
+/// The input of a run: scene, settings and frames, and a former run if it goes on.
 struct Plan {
     source: Source,
     scene: Scene,
@@ -121,15 +126,16 @@ struct Plan {
 }
 
 impl Plan {
-    fn of(arguments: &arguments::Run) -> Result<Self, Failure> {
+    fn of(arguments: &arguments::Run, before: Option<&mut Stored<'_>>) -> Result<Self, Failure> {
         let source = arguments.scene.as_deref().map(Source::read).transpose()?;
-        if let Some(path) = &arguments.from {
-            let former = Former::read(path, source.as_ref(), arguments.duration)?;
+        if let Some(before) = before {
+            let former = Former::read(before, source.as_ref(), arguments.duration)?;
             let Former { source, scene, parameters, frames, tally, simulation } = former;
             let settings = *simulation.settings();
             return Ok(Plan { source, scene, parameters, settings, frames, former: Some((simulation, tally)) });
         }
-        let Some(source) = source else { return Err(Failure::input("name a scene, or a trajectory with --from")) };
+        // The options ask for a scene where there is no trajectory.
+        let Some(source) = source else { return Err(Failure::input("no scene is named")) };
         let parameters = arguments.parameters.set.clone();
         let scene = source.load(&parameters).map_err(Failure::formatted)?;
         let settings = settings(arguments, scene.settings)?;
@@ -142,7 +148,8 @@ impl Plan {
     /// The output, which is the former trajectory where the run goes on and no other output is named.
     fn target(arguments: &arguments::Run) -> Result<Option<Target>, Failure> {
         let path = arguments.output.as_deref().or(arguments.from.as_deref());
-        let is_same = arguments.from.as_deref() == path;
+        let [from, to] = [arguments.from.as_deref(), path].map(|path| path.and_then(|path| path.canonicalize().ok()));
+        let is_same = from.is_some() && from == to;
         let target = path.map(|path| Target::new(path, arguments.force || is_same)).transpose()?;
         let holds_snapshots = target.as_ref().is_some_and(|target| target.format() == Format::Npz);
         if (arguments.from.is_some() || arguments.checkpoint.is_some()) && !holds_snapshots {
@@ -207,7 +214,7 @@ impl Job {
                 return Ok(Some(Stop::Interrupt));
             }
             let clock = ProcessTime::now();
-            let outcome = simulation.advance(self.frames.length());
+            let outcome = simulation.advance(self.frames.length);
             self.tally.cpu += clock.elapsed();
             self.tally.reached(simulation);
             match outcome {
@@ -257,6 +264,7 @@ impl Job {
         if let Err(failure) = recorder.checkpoint(&origin, Extras { snapshot: Some(&snapshot), events }) {
             checkpoints.failed(&failure);
         }
+        checkpoints.begin();
         Ok(())
     }
 }

@@ -104,6 +104,15 @@ impl Origin {
         Ok(())
     }
 
+    /// The same of a run whose earlier file `output` is kept, because a longer one does not fit on the disk.
+    pub(super) fn kept_earlier(&self, output: &str) -> Self {
+        let error = format!(
+            "cannot write all frames to `{output}`: the disk is full; the file of before is kept, and \
+             `qhat run --from {output}` goes on from it"
+        );
+        Origin { status: Status::Interrupted, error: Some(error), ..self.clone() }
+    }
+
     /// The same of a trajectory whose last frames could not be written to `output`.
     pub(super) fn shortened(&self, output: &str) -> Self {
         let unwritten = format!("cannot write all frames to `{output}`; those that fit are kept");

@@ -1,5 +1,5 @@
-//! Snapshot: what a run needs to go on, kept inside its trajectory: the text of the scene, the plan of frames, the
-//! simulation and the counts of the summary. A run that goes on from it has the bytes of a run that did not stop.
+//! Snapshot: the data from which a run goes on, kept inside its trajectory: the text of the scene, the plan of frames,
+//! the simulation and the counts of the summary. A run that goes on from it has the bytes of a run that did not stop.
 
 use super::frames::Frames;
 use super::summary::Tally;
@@ -9,19 +9,17 @@ use crate::trajectory::Stored;
 use qhat::Simulation;
 use qhat_scene::Scene;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// The first bytes of a snapshot, with the version of its format. Any change of the types that are saved makes a new
 /// one.
-const HEAD: &[u8; 8] = b"qhatrun\x01";
+const HEAD: &[u8; 8] = b"qhatrun\x02";
 
 /// A run at the end of a frame.
 #[derive(Serialize, Deserialize)]
 struct Content {
     scene: Text,
     parameters: Vec<(String, f64)>,
-    duration: f64,
-    frames: u64,
+    frames: Frames,
     tally: Tally,
     simulation: Vec<u8>,
 }
@@ -37,8 +35,7 @@ pub(super) fn bytes(
     let content = Content {
         scene: source.text(),
         parameters: parameters.to_vec(),
-        duration: frames.duration,
-        frames: frames.count as u64,
+        frames,
         tally: tally.clone(),
         simulation: simulation.to_bytes(),
     };
@@ -63,14 +60,19 @@ impl Former {
     /// # Errors
     /// A file that has no snapshot, one of another version or another scene, a duration that has already been reached
     /// or that is no multiple of the frame.
-    pub(super) fn read(path: &Path, given: Option<&Source>, duration: Option<f64>) -> Result<Self, Failure> {
-        let name = path.display();
+    pub(super) fn read(
+        stored: &mut Stored<'_>,
+        given: Option<&Source>,
+        duration: Option<f64>,
+    ) -> Result<Self, Failure> {
+        let name = stored.path().display();
         let refused = |reason: String| Failure::input(format!("cannot go on from `{name}`: {reason}"));
-        let mut stored = Stored::open(path)?;
         let Some(bytes) = stored.snapshot()? else {
             let origin = stored.origin();
             let error = origin.as_ref().and_then(|origin| origin.get("error")?.as_str());
+            let status = origin.as_ref().and_then(|origin| origin.get("status")?.as_str());
             let reason = match error {
+                Some(error) if status == Some("interrupted") => format!("it has no snapshot: {error}"),
                 Some(error) => format!("its run ended with an error, from which nothing can go on: {error}"),
                 None => "it holds no snapshot of its run, which `qhat run -o run.npz` writes".to_owned(),
             };
@@ -99,35 +101,19 @@ impl Former {
         let scene = source.load(&content.parameters).map_err(Failure::formatted)?;
         let simulation = Simulation::restore(scene.system.clone(), &content.simulation);
         let simulation = simulation.map_err(|error| refused(error.to_string()))?;
-        let frames = Frames { duration: content.duration, count: content.frames as usize };
-        let frames = longer(frames, duration).map_err(refused)?;
+        let frames = match duration {
+            Some(duration) => content.frames.over(duration).map_err(refused)?,
+            None => content.frames,
+        };
         let (kept, reached) = (stored.frames()?, content.tally.frames as u64);
         if kept != reached {
             return Err(refused(format!("it has {kept} frames, and its snapshot was taken after {reached}")));
         }
         if reached > frames.count as u64 {
-            let reason = format!(
-                "its run of {} s is complete; ask for a longer one with --duration",
-                qhat::Seconds(frames.duration)
-            );
-            return Err(refused(reason));
+            let time = qhat::Seconds(content.frames.time(content.tally.frames - 1));
+            return Err(refused(format!("it has reached t = {time} s; ask for more with --duration")));
         }
         let Content { parameters, tally, .. } = content;
         Ok(Former { source, scene, parameters, frames, tally, simulation })
     }
-}
-
-/// The frames of a run whose duration [s] changes, with frames of the same length.
-fn longer(frames: Frames, duration: Option<f64>) -> Result<Frames, String> {
-    let Some(duration) = duration else { return Ok(frames) };
-    let count = (duration / frames.length()).round();
-    let whole = Frames { duration, count: count as usize };
-    // Frames of another length, by as much as a bit, would end at other times.
-    if !(1.0..=super::frames::MOST).contains(&count) || whole.length().to_bits() != frames.length().to_bits() {
-        return Err(format!(
-            "a duration of {duration} s has no whole number of its frames of {} s",
-            qhat::Seconds(frames.length())
-        ));
-    }
-    Ok(whole)
 }

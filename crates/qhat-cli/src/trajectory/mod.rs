@@ -49,9 +49,11 @@ pub(crate) enum Kept {
     Whole,
     /// The first frames, as many as fit on the disk.
     Part,
+    /// Those of an earlier file of this run, because not all fit on the disk.
+    Earlier,
 }
 
-/// What a trajectory keeps beside its frames.
+/// The snapshot and the events, which a trajectory keeps beside its frames.
 #[derive(Clone, Copy)]
 pub(crate) struct Extras<'a> {
     /// The bytes from which the run goes on, if it can.

@@ -12,7 +12,7 @@ use super::{Extras, Kept};
 use crate::failure::Failure;
 use qhat::{Event, EventKind, System};
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use tempfile::NamedTempFile;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
@@ -63,6 +63,10 @@ pub(crate) struct Recorder {
     names: Vec<(&'static str, Vec<String>)>,
     /// The mass of each particle [kg]; infinite where the particle is fixed.
     masses: Vec<f64>,
+    /// Whether the target is an earlier file of this run, which a shorter one must not replace.
+    has_earlier: bool,
+    /// Whether a frame did not fit on the disk.
+    is_cut: bool,
 }
 
 impl Recorder {
@@ -82,7 +86,8 @@ impl Recorder {
         let masses = system.inverse_masses().iter().map(|w| 1.0 / w);
         let masses =
             masses.zip(system.masses()).map(|(inverse, &mass)| if inverse.is_finite() { mass } else { inverse });
-        Ok(Recorder { target, frames: 0, arrays, names, masses: masses.collect() })
+        let masses = masses.collect();
+        Ok(Recorder { target, frames: 0, arrays, names, masses, has_earlier: false, is_cut: false })
     }
 
     /// Takes the frames of a former trajectory.
@@ -92,6 +97,8 @@ impl Recorder {
             former.copy(array.quantity.name(), width, &mut array.file)?;
         }
         self.frames = former.frames()? as usize;
+        let [from, to] = [former.path(), self.target.path()].map(std::fs::canonicalize);
+        self.has_earlier = from.is_ok_and(|from| to.is_ok_and(|to| from == to));
         Ok(())
     }
 
@@ -103,7 +110,9 @@ impl Recorder {
         let at_the_end = self.arrays.iter_mut().try_for_each(|array| array.file.seek(SeekFrom::End(0)).map(|_| ()));
         let file =
             packed.and_then(|file| at_the_end.map(|()| file)).map_err(|error| self.target.cannot_write(&error))?;
-        self.target.put(file)
+        self.target.put(file)?;
+        self.has_earlier = true;
+        Ok(())
     }
 
     pub(super) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
@@ -123,6 +132,7 @@ impl Recorder {
 
     /// Shortens all arrays to the frames that are whole on the disk.
     fn keep_whole_frames(&mut self) -> io::Result<()> {
+        self.is_cut = true;
         let mut frames = self.frames as u64;
         let mut arrays = Vec::new();
         for array in std::mem::take(&mut self.arrays) {
@@ -139,29 +149,48 @@ impl Recorder {
         self.arrays.iter_mut().try_for_each(|array| array.cut(frames as u64))
     }
 
-    /// Packs the arrays. On a full disk the last half of the frames is given up, again and again, until the rest fits.
+    /// Packs the arrays. On a full disk an earlier file of this run stays. Where there is none, the last half of the
+    /// frames is given up, again and again, until the rest fits.
     pub(super) fn finish(mut self, whole: &str, part: &str, extras: Extras<'_>) -> Result<Kept, Failure> {
-        let mut kept = Kept::Whole;
         if self.arrays.iter_mut().try_for_each(|array| array.file.flush()).is_err() {
             self.keep_whole_frames().map_err(|error| self.target.cannot_write(&error))?;
-            kept = Kept::Part;
         }
         loop {
-            // The snapshot belongs to the last frame.
-            let (origin, extras) =
-                if kept == Kept::Whole { (whole, extras) } else { (part, Extras { snapshot: None, ..extras }) };
+            if self.is_cut && self.has_earlier {
+                return Ok(Kept::Earlier);
+            }
+            let (origin, extras) = if self.is_cut { (part, self.shortened(extras)) } else { (whole, extras) };
             match self.pack(origin, extras) {
-                Ok(file) => return self.target.put(file).map(|()| kept),
+                Ok(file) => {
+                    self.target.put(file)?;
+                    return Ok(if self.is_cut { Kept::Part } else { Kept::Whole });
+                }
                 Err(error) if self.frames <= 1 || error.kind() != io::ErrorKind::StorageFull => {
                     return Err(self.target.cannot_write(&error));
                 }
                 Err(_) => {
+                    self.is_cut = true;
                     let half = self.frames.div_ceil(2);
                     self.cut(half).map_err(|error| self.target.cannot_write(&error))?;
-                    kept = Kept::Part;
                 }
             }
         }
+    }
+
+    /// The events up to the last frame. There is no snapshot, which would belong to a later frame.
+    fn shortened<'a>(&mut self, extras: Extras<'a>) -> Extras<'a> {
+        let last = self.last_time().unwrap_or(f64::INFINITY);
+        let count = extras.events.partition_point(|event| event.time <= last);
+        Extras { snapshot: None, events: &extras.events[..count] }
+    }
+
+    /// t of the last frame \[s\]. Every trajectory begins with the times.
+    fn last_time(&mut self) -> io::Result<f64> {
+        let times = self.arrays.first_mut().ok_or(io::ErrorKind::NotFound)?.file.get_mut();
+        let mut bytes = [0; 8];
+        times.seek(SeekFrom::End(-8))?;
+        times.read_exact(&mut bytes)?;
+        Ok(f64::from_le_bytes(bytes))
     }
 
     fn pack(&mut self, origin: &str, extras: Extras<'_>) -> io::Result<NamedTempFile> {
@@ -219,22 +248,8 @@ fn event_arrays(events: &[Event]) -> [(&'static str, Vec<u8>); 5] {
     [
         ("event_t", numbers(&|event| event.time)),
         ("event_constraint", texts(&|event| event.constraint.clone())),
-        ("event_kind", texts(&|event| kind(event.kind).to_owned())),
+        ("event_kind", texts(&|event| event.kind.name().to_owned())),
         ("event_speed", numbers(&speed)),
         ("event_impulse", numbers(&|event| event.impulse)),
     ]
-}
-
-/// The word of a kind of event.
-fn kind(kind: EventKind) -> &'static str {
-    match kind {
-        EventKind::Impact { .. } => "impact",
-        EventKind::Closed => "closed",
-        EventKind::Opened => "opened",
-        EventKind::Slipped => "slipped",
-        EventKind::Stuck => "stuck",
-        EventKind::Broke => "broke",
-        // Kinds of a later engine have a word when they have one here.
-        _ => "other",
-    }
 }

@@ -9,7 +9,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The parts of the energy account, in the order of its array [J].
 pub(crate) const ENERGIES: [&str; 6] = ["kinetic", "potential", "dissipation", "stabilization", "external", "drives"];
 
-/// Everything that is known at a frame.
+/// The time, the terms and the energies of a frame.
 pub(crate) struct Frame<'a> {
     /// \[s\].
     pub(crate) time: f64,
@@ -35,8 +35,6 @@ pub(crate) enum Quantity {
     Energy,
 }
 
-use Quantity::*;
-
 /// The extent of a quantity.
 enum Extent {
     /// One number.
@@ -54,51 +52,64 @@ enum Extent {
 impl Quantity {
     /// All of them, in the order of files.
     pub(crate) const ALL: [Quantity; 13] = [
-        Time,
-        Positions,
-        Velocities,
-        Accelerations,
-        AppliedForces,
-        ConstraintForces,
-        Multipliers,
-        MultiplierIsUnique,
-        Residual,
-        ResidualRate,
-        Tension,
-        TensionIsUnique,
-        Energy,
+        Quantity::Time,
+        Quantity::Positions,
+        Quantity::Velocities,
+        Quantity::Accelerations,
+        Quantity::AppliedForces,
+        Quantity::ConstraintForces,
+        Quantity::Multipliers,
+        Quantity::MultiplierIsUnique,
+        Quantity::Residual,
+        Quantity::ResidualRate,
+        Quantity::Tension,
+        Quantity::TensionIsUnique,
+        Quantity::Energy,
     ];
 
-    /// Those that are written unless others are asked for.
-    pub(crate) const USUAL: [Quantity; 7] =
-        [Time, Positions, Velocities, ConstraintForces, Multipliers, Tension, TensionIsUnique];
+    /// The quantities that are written unless others are asked for.
+    pub(crate) const USUAL: [Quantity; 7] = [
+        Quantity::Time,
+        Quantity::Positions,
+        Quantity::Velocities,
+        Quantity::ConstraintForces,
+        Quantity::Multipliers,
+        Quantity::Tension,
+        Quantity::TensionIsUnique,
+    ];
 
     /// The name of its array.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Time => "t",
-            Positions => "positions",
-            Velocities => "velocities",
-            Accelerations => "accelerations",
-            AppliedForces => "applied_forces",
-            ConstraintForces => "constraint_forces",
-            Multipliers => "multipliers",
-            MultiplierIsUnique => "multiplier_is_unique",
-            Residual => "residual",
-            ResidualRate => "residual_rate",
-            Tension => "tension",
-            TensionIsUnique => "tension_is_unique",
-            Energy => "energy",
+            Quantity::Time => "t",
+            Quantity::Positions => "positions",
+            Quantity::Velocities => "velocities",
+            Quantity::Accelerations => "accelerations",
+            Quantity::AppliedForces => "applied_forces",
+            Quantity::ConstraintForces => "constraint_forces",
+            Quantity::Multipliers => "multipliers",
+            Quantity::MultiplierIsUnique => "multiplier_is_unique",
+            Quantity::Residual => "residual",
+            Quantity::ResidualRate => "residual_rate",
+            Quantity::Tension => "tension",
+            Quantity::TensionIsUnique => "tension_is_unique",
+            Quantity::Energy => "energy",
         }
     }
 
     fn extent(self) -> Extent {
         match self {
-            Time => Extent::Single,
-            Positions | Velocities | Accelerations | AppliedForces | ConstraintForces => Extent::Particles,
-            Multipliers | MultiplierIsUnique | Residual | ResidualRate => Extent::Rows,
-            Tension | TensionIsUnique => Extent::Links,
-            Energy => Extent::Energies,
+            Quantity::Time => Extent::Single,
+            Quantity::Positions
+            | Quantity::Velocities
+            | Quantity::Accelerations
+            | Quantity::AppliedForces
+            | Quantity::ConstraintForces => Extent::Particles,
+            Quantity::Multipliers | Quantity::MultiplierIsUnique | Quantity::Residual | Quantity::ResidualRate => {
+                Extent::Rows
+            }
+            Quantity::Tension | Quantity::TensionIsUnique => Extent::Links,
+            Quantity::Energy => Extent::Energies,
         }
     }
 
@@ -117,21 +128,21 @@ impl Quantity {
     pub(crate) fn row<'a>(self, frame: &'a Frame<'_>) -> Cow<'a, [f64]> {
         let terms = frame.terms;
         match self {
-            Time => Cow::Borrowed(std::slice::from_ref(&frame.time)),
-            Positions => Cow::Borrowed(&terms.positions),
-            Velocities => Cow::Borrowed(&terms.velocities),
-            Accelerations => Cow::Borrowed(&terms.accelerations),
-            AppliedForces => Cow::Borrowed(&terms.applied_forces),
-            ConstraintForces => Cow::Borrowed(&terms.constraint_forces),
-            Multipliers => Cow::Borrowed(&terms.multipliers),
-            MultiplierIsUnique => as_numbers(&terms.multiplier_is_unique),
-            Residual => Cow::Borrowed(&terms.residual),
-            ResidualRate => Cow::Borrowed(&terms.residual_rate),
-            Tension => Cow::Borrowed(&terms.tension),
-            TensionIsUnique => as_numbers(&terms.tension_is_unique),
-            Energy => {
+            Quantity::Time => Cow::Borrowed(std::slice::from_ref(&frame.time)),
+            Quantity::Positions => Cow::Borrowed(&terms.positions),
+            Quantity::Velocities => Cow::Borrowed(&terms.velocities),
+            Quantity::Accelerations => Cow::Borrowed(&terms.accelerations),
+            Quantity::AppliedForces => Cow::Borrowed(&terms.applied_forces),
+            Quantity::ConstraintForces => Cow::Borrowed(&terms.constraint_forces),
+            Quantity::Multipliers => Cow::Borrowed(&terms.multipliers),
+            Quantity::MultiplierIsUnique => as_numbers(&terms.multiplier_is_unique),
+            Quantity::Residual => Cow::Borrowed(&terms.residual),
+            Quantity::ResidualRate => Cow::Borrowed(&terms.residual_rate),
+            Quantity::Tension => Cow::Borrowed(&terms.tension),
+            Quantity::TensionIsUnique => as_numbers(&terms.tension_is_unique),
+            Quantity::Energy => {
                 let Work { dissipation, stabilization, external, drives } = frame.energy.work;
-                let qhat::Energy { kinetic, potential, .. } = frame.energy;
+                let Energy { kinetic, potential, .. } = frame.energy;
                 Cow::Owned(vec![kinetic, potential, dissipation, stabilization, external, drives])
             }
         }
@@ -140,16 +151,16 @@ impl Quantity {
     /// The names of its columns in a CSV.
     pub(crate) fn columns(self, system: &System) -> Vec<String> {
         let letter = match self {
-            Positions => "",
-            Velocities => "v",
-            Accelerations => "a",
-            AppliedForces => "applied_",
+            Quantity::Positions => "",
+            Quantity::Velocities => "v",
+            Quantity::Accelerations => "a",
+            Quantity::AppliedForces => "applied_",
             _ => "f",
         };
         let axes = &AXES[..system.dimension()];
         let of_particle = |name: &String| axes.iter().map(|axis| format!("{name}.{letter}{axis}")).collect::<Vec<_>>();
         let word = match self {
-            Multipliers => "multiplier",
+            Quantity::Multipliers => "multiplier",
             other => other.name(),
         };
         match self.extent() {
@@ -175,11 +186,11 @@ impl FromStr for Quantity {
 
 /// The quantities of a list such as `positions,energy`, with the time; all of them for `all`.
 pub(crate) fn selection(text: &str) -> Result<Vec<Quantity>, String> {
-    if text.trim() == "all" {
+    if text.split(',').any(|name| name.trim() == "all") {
         return Ok(Quantity::ALL.to_vec());
     }
     let mut selected = text.split(',').map(|name| name.trim().parse()).collect::<Result<Vec<Quantity>, String>>()?;
-    selected.push(Time);
+    selected.push(Quantity::Time);
     selected.sort_unstable();
     selected.dedup();
     Ok(selected)

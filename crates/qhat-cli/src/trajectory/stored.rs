@@ -28,6 +28,10 @@ impl<'a> Stored<'a> {
         Ok(Stored { path, archive })
     }
 
+    pub(crate) fn path(&self) -> &'a Path {
+        self.path
+    }
+
     /// The number of frames.
     pub(crate) fn frames(&mut self) -> Result<u64, Failure> {
         let shape = self.header("t").map(|(header, _)| header.shape().to_vec());
@@ -104,8 +108,9 @@ impl<'a> Stored<'a> {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, "it is no list of bytes"));
             }
             let mut bytes = Vec::new();
-            member.read_to_end(&mut bytes)?;
-            if bytes.len() as u64 == header.shape()[0] {
+            let length = header.shape()[0];
+            member.by_ref().take(length.saturating_add(1)).read_to_end(&mut bytes)?;
+            if bytes.len() as u64 == length {
                 Ok(bytes)
             } else {
                 Err(io::Error::new(io::ErrorKind::UnexpectedEof, "it is cut"))
@@ -129,7 +134,7 @@ impl<'a> Stored<'a> {
         if own != Some(numbers) || header.order() != Order::C || header.dtype().num_bytes() != Some(8) {
             return Err(wrong(format!("it has the shape {:?}, and the run needs {numbers} numbers", header.shape())));
         }
-        let copied = io::copy(&mut member, to)?;
+        let copied = io::copy(&mut member.by_ref().take((8 * numbers).saturating_add(1)), to)?;
         if copied == 8 * numbers { Ok(()) } else { Err(wrong("it is cut".into())) }
     }
 

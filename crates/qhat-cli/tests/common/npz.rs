@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
-use zip::ZipArchive;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// One array: its type as NumPy writes it, its shape, its bytes.
 #[derive(Debug, PartialEq)]
@@ -48,6 +49,24 @@ pub(crate) fn read(path: &Path) -> BTreeMap<String, Array> {
         arrays.insert(name, parse(&bytes));
     }
     arrays
+}
+
+/// Writes an NPZ file with one array changed, its header included.
+pub(crate) fn rewrite(from: &Path, to: &Path, name: &str, change: &dyn Fn(&mut Vec<u8>)) {
+    let mut archive = ZipArchive::new(File::open(from).unwrap()).unwrap();
+    let mut written = ZipWriter::new(File::create(to).unwrap());
+    for index in 0..archive.len() {
+        let mut member = archive.by_index(index).unwrap();
+        let mut bytes = Vec::new();
+        member.read_to_end(&mut bytes).unwrap();
+        if member.name().strip_suffix(".npy") == Some(name) {
+            change(&mut bytes);
+        }
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        written.start_file(member.name(), options).unwrap();
+        written.write_all(&bytes).unwrap();
+    }
+    written.finish().unwrap();
 }
 
 fn parse(bytes: &[u8]) -> Array {

@@ -40,7 +40,7 @@ impl Assembly<'_, '_, '_> {
         place: &Node,
     ) -> Option<f64> {
         if place.get("length").is_some() {
-            // It was refused, and told.
+            // The length was refused, and its error reported.
             return None;
         }
         let length = self.distance(a, b);

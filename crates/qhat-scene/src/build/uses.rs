@@ -12,7 +12,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// The parts that the tables of a scene have become, and what was computed from numbers of the scene.
+/// The parts that tables have become, and the numbers measured or weighed on the way.
 #[derive(Debug, Default)]
 pub(super) struct Made {
     /// The constraints of each entry of `[[constraints]]`.

@@ -111,7 +111,7 @@ pub(super) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
     state.t = start + length;
     if let Some(carry) = &mut state.carry {
         let next = choice.filter(|choice| choice.integrator == Integrator::Bdf2);
-        let frames = next.map_or(REST, |choice| choice.frames - 1);
+        let frames = next.map_or(REST, |choice| choice.frames.saturating_sub(1));
         carry.choice = (frames > 0).then_some(Choice { integrator: Integrator::Bdf2, frames });
     }
     Ok(report)

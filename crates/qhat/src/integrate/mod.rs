@@ -77,6 +77,7 @@ pub(crate) fn step_for(
     if state.rank_in(system.all_row_count()).is_none() {
         state.rank = None;
     }
+    workspace.follow(system);
     workspace.begin_watch(system, settings);
     let frame = &mut Frame { system, settings, workspace, length };
     let report: StepReport = in_dimension!(system.dimension, D => match settings.integrator {
@@ -168,6 +169,7 @@ pub fn project(
     workspace: &mut Workspace,
 ) -> Result<Projection, StepError> {
     settings.check()?;
+    workspace.follow(system);
     workspace.equation.solver.memory.forget();
     in_dimension!(system.dimension, D => {
         let before = state.clone();

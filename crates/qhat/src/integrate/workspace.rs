@@ -30,6 +30,8 @@ pub struct Workspace {
     /// The record of the largest tension of a frame, if it is to be recorded. A frame loop takes it for the time that
     /// the loop runs, and puts it back.
     pub(super) watch: Option<TensionWatch>,
+    /// The values of the parameters of the system, on which masses and lengths in these arrays depend.
+    bound: Vec<f64>,
 }
 
 impl Workspace {
@@ -48,6 +50,14 @@ impl Workspace {
             reading: Reading::default(),
             radau: None,
             watch: None,
+            bound: system.parameters().iter().map(|parameter| parameter.value).collect(),
+        }
+    }
+
+    /// Makes the arrays anew if the system was bound to other values of its parameters.
+    pub(crate) fn follow(&mut self, system: &System) {
+        if !self.bound.iter().eq(system.parameters().iter().map(|parameter| &parameter.value)) {
+            *self = self.renewed(system);
         }
     }
 

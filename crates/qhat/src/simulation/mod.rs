@@ -27,6 +27,8 @@ pub struct Simulation {
     system: System,
     state: State,
     settings: Settings,
+    /// The settings under which the start was made consistent.
+    begun_with: Settings,
     workspace: Workspace,
     start: State,
     projection: Projection,
@@ -52,12 +54,14 @@ impl Simulation {
             system,
             state,
             settings,
+            begun_with: settings,
         };
         simulation.begin()?;
         Ok(simulation)
     }
 
     fn begin(&mut self) -> Result<(), StepError> {
+        self.begun_with = self.settings;
         self.projection = Projection::default();
         // Also before the projection, whose error would name a constraint.
         check_start(&self.system, &self.state, &self.settings)?;
@@ -75,7 +79,7 @@ impl Simulation {
     /// consistent positions that are nearest to the start.
     fn hold_second_order(&mut self) -> Result<(), StepError> {
         let flat = self.system.flat_cliques(&self.state);
-        if flat.is_empty() {
+        if flat.is_empty() && self.system.second_order.is_empty() {
             return Ok(());
         }
         let mut system = self.system.clone();
@@ -133,8 +137,6 @@ impl Simulation {
     /// As [`Simulation::new`], if the settings changed to ones under which the start cannot be made consistent.
     pub fn reset(&mut self) -> Result<(), StepError> {
         self.release();
-        // Rows that followed from others where the motion was need not follow at the start.
-        self.workspace = self.workspace.renewed(&self.system);
         self.state = self.start.clone();
         self.begin()
     }

@@ -8,11 +8,12 @@ use crate::state::State;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 
-/// What a simulation owns beside its system.
+/// The data that a simulation owns beside its system.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     state: State,
     settings: Settings,
+    begun_with: Settings,
     start: State,
     projection: Projection,
     account: EnergyAccount,
@@ -27,6 +28,7 @@ impl Simulation {
         let saved = Saved {
             state: self.state.clone(),
             settings: self.settings,
+            begun_with: self.begun_with,
             start: self.start.clone(),
             projection: self.projection.clone(),
             account: self.account.clone(),
@@ -58,15 +60,15 @@ impl Simulation {
     /// differs, as by a hand that held a particle.
     pub fn restore(system: System, bytes: &[u8]) -> Result<Simulation, RestoreError> {
         let saved: Saved = from_bytes(Kind::Simulation, &system, bytes)?;
-        if saved.start.q.len() != system.coordinate_count() {
+        if !fits(&saved.start, &system) {
             return Err(RestoreError::Damaged);
         }
         // The start gives rows to joints that rods hold only to second order.
-        let mut simulation = Simulation::new(system, saved.start, saved.settings)?;
+        let mut simulation = Simulation::new(system, saved.start, saved.begun_with)?;
         if !fits(&saved.state, &simulation.system) {
             return Err(RestoreError::Damaged);
         }
-        simulation.state = saved.state;
+        (simulation.state, simulation.settings) = (saved.state, saved.settings);
         simulation.projection = saved.projection;
         simulation.account = saved.account;
         simulation.log = saved.log;

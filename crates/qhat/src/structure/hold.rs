@@ -27,7 +27,7 @@ const SAYS_MORE: f64 = 1e-6;
 /// Weight of a corner that can move below which a fixed particle follows from fixed corners.
 const NO_PART: f64 = 1e-6;
 
-/// What holds flat cliques.
+/// The rows that hold flat cliques, and the rods whose lengths then follow.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hold {
     /// Joints as linear combinations of corners; the joint comes first.
@@ -36,7 +36,7 @@ pub(crate) struct Hold {
     pub(crate) following: Vec<ConstraintId>,
 }
 
-/// What holds cliques whose particles are at q \[m\]. Cliques in a plane are to come last.
+/// Finds these rows and rods for cliques at q \[m\]; cliques in a plane come last in the list.
 pub(crate) fn hold<const D: usize>(
     constraints: &[NamedConstraint],
     inverse_mass: &[f64],
@@ -48,7 +48,12 @@ pub(crate) fn hold<const D: usize>(
     let mut bodies = Bodies::new(inverse_mass);
     // A line within a plane is held by the plane.
     for clique in cliques.iter().rev() {
-        hold.relations.extend(relations::<D>(clique, inverse_mass, q));
+        let within = |plane: &FlatClique| {
+            !plane.is_line && clique.particles.iter().all(|id| plane.particles.binary_search(id).is_ok())
+        };
+        if !clique.is_line || !cliques.iter().any(within) {
+            hold.relations.extend(relations::<D>(clique, inverse_mass, q));
+        }
         let flat = Flat::of::<D>(clique, q);
         let offset = |[a, b]: [usize; 2]| {
             let [a, b] = [a, b].map(|k| flat.coordinates[k]);

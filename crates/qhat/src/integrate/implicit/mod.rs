@@ -93,9 +93,7 @@ pub(crate) fn frame<const D: usize>(
     };
     let before = frame.factorizations();
     if state.carry.as_ref().is_none_or(|carry| carry.lambda.len() != system.all_row_count()) {
-        // λ of the equation is the best first guess. A method that passed a singular position may have left rows out
-        // that are independent here.
-        state.rank = None;
+        // λ of the equation is the best first guess.
         frame.workspace.solve::<D>(system, state, &Feedback::NONE);
         let equation = &mut frame.workspace.equation;
         let is_nearly_singular = equation.margin::<D>(system).is_none_or(|margin| margin < APPROACH);

@@ -85,6 +85,7 @@ pub(crate) fn frame<const D: usize>(frame: &mut Frame<'_>, state: &mut State) ->
     if !is_whole {
         // A singular position is near. Velocities that were not projected in the last frame are projected beyond it.
         let rest = length - (state.t - start);
+        let is_nearly_singular = is_nearly_singular && state.t == start;
         state.carry = Some(Carry { substep: rest, is_nearly_singular, ..Carry::default() });
         report.absorb(pair_frame::frame::<D>(&DOP853, &mut frame.over(rest), state)?);
         // The parts add up to the frame only up to rounding.

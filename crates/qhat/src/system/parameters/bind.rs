@@ -59,11 +59,6 @@ impl System {
         outcome
     }
 
-    /// Makes plain numbers of all that depends on parameters.
-    pub fn forget_parameters(&mut self) {
-        self.parameters = Parameters::default();
-    }
-
     /// The state at the start: the positions and velocities that the builder was given, or those that follow from the
     /// parameters.
     pub fn start(&self) -> State {
@@ -77,21 +72,35 @@ impl System {
             return Err(BindError::Count { wanted: list.len(), given: values.len() });
         }
         list.iter().zip(values).try_for_each(|(parameter, &value)| parameter.check(value))?;
-        // Rows of joints that rods hold only to second order were measured with the numbers before.
-        self.set_second_order(Vec::new(), &[]);
         before.clear();
         let outcome = uses.iter().try_for_each(|it| {
             before.push(self.write(it, it.value(values))?);
-            if self.has_its_structure(it) { Ok(()) } else { Err(BindError::Structure { place: it.place.clone() }) }
+            Ok(())
         });
-        if let Err(error) = outcome.and_then(|()| uses.iter().try_for_each(|it| self.check_use(it, values))) {
+        let outcome = outcome.and_then(|()| {
+            uses.iter().try_for_each(|it| self.check_use(it).map_err(|reason| it.refused(values, reason)))?;
+            let other = uses.iter().find(|it| !self.has_its_structure(it));
+            other.map_or(Ok(()), |it| Err(BindError::Structure { place: it.place.clone() }))
+        });
+        if let Err(error) = outcome {
+            let first = uses.iter().find(|it| !self.takes(it));
+            let mut culprit = None;
             for (it, &number) in uses.iter().zip(before.iter()).rev() {
                 self.write(it, number)?;
+                // The number without which the part takes its others is the one to name.
+                if culprit.is_none() && first.is_some_and(|first| self.takes(first)) {
+                    culprit = Some(it);
+                }
             }
             before.clear();
-            return Err(error);
+            return Err(match culprit {
+                Some(it) => it.named_in(error, values),
+                None => error,
+            });
         }
         before.clear();
+        // Rows of joints that rods hold only to second order were measured with the numbers before.
+        self.set_second_order(Vec::new(), &[]);
         list.iter_mut().zip(values).for_each(|(parameter, &value)| parameter.value = value);
         self.renew(uses);
         Ok(())
@@ -129,9 +138,9 @@ impl System {
     }
 
     /// `Ok` if the part of a use takes its number.
-    fn check_use(&self, it: &ParameterUse, values: &[f64]) -> Result<(), BindError> {
+    fn check_use(&self, it: &ParameterUse) -> Result<(), Refused> {
         let Some(quantity) = &it.quantity else { return Ok(()) };
-        let outcome = match quantity {
+        match quantity {
             Quantity::Mass(id) | Quantity::Position(id, _) | Quantity::Velocity(id, _) => {
                 in_dimension!(self.dimension, D => {
                     let (x, v) = (block::<D>(&self.start_q, *id), block::<D>(&self.start_qd, *id));
@@ -149,8 +158,12 @@ impl System {
                 check_force(force, self.dimension, self.particle_count()).map_err(Refused::from)
             }
             Quantity::Feedback(_) => self.feedback.check().map_err(Refused::from),
-        };
-        outcome.map_err(|reason| BindError::Refused { place: it.place.clone(), value: it.value(values), reason })
+        }
+    }
+
+    /// Whether the part of a use takes its numbers and keeps its structure with them.
+    fn takes(&self, it: &ParameterUse) -> bool {
+        self.check_use(it).is_ok() && self.has_its_structure(it)
     }
 
     /// Whether the part of a use has the rows that it was built with: as many, and rigid ones or soft ones.

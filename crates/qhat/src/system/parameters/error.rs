@@ -62,12 +62,6 @@ pub enum BindError {
         /// The place of the number.
         place: String,
     },
-    /// There is no parameter of this name.
-    #[error("there is no parameter `{name}`")]
-    NoParameter {
-        /// The name.
-        name: String,
-    },
     /// The name cannot be that of a parameter, or belongs to another one.
     #[error(transparent)]
     Name(#[from] ParameterError),

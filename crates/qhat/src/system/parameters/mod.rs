@@ -90,6 +90,19 @@ impl ParameterUse {
     fn value(&self, values: &[f64]) -> f64 {
         self.expression.value(values, &[], 0.0)
     }
+
+    fn refused(&self, values: &[f64], reason: Refused) -> BindError {
+        BindError::Refused { place: self.place.clone(), value: self.value(values), reason }
+    }
+
+    /// The refusal of the part of this use, with its own place and value.
+    fn named_in(&self, refusal: BindError, values: &[f64]) -> BindError {
+        match refusal {
+            BindError::Refused { reason, .. } => self.refused(values, reason),
+            BindError::Structure { .. } => BindError::Structure { place: self.place.clone() },
+            other => other,
+        }
+    }
 }
 
 impl fmt::Display for ParameterUse {
