@@ -23,9 +23,10 @@ const MAX_ITERATIONS: usize = 8;
 /// Newton iterations that take C from its tolerance to roundoff.
 const SHARPENED: usize = 2;
 
-/// Margin to a singular position below which velocities are not projected: what Ċ is off by there changes q̇ by a
-/// hundred times as much, in a direction that the constraints hardly see.
-const NEAR: f64 = 1e-2;
+/// Margin σ to a singular position below which velocities are not projected. Where C is roundoff, 1e-16 of the extent,
+/// q is off by 1e-16/σ in a direction that the constraints hardly see, and Ċ = 0 then turns q̇ by 1e-16/σ² of itself,
+/// which the pairs take for as much as their finest tolerance at this σ.
+const NEAR: f64 = 1e-3;
 
 /// Part of a substep over which the margin is differenced.
 const LOOK_AHEAD: f64 = 0.01;
@@ -77,6 +78,11 @@ pub(super) trait Field {
     /// Keeps the motion projected last, at the time t: moves the feet of beads on to it.
     fn follow(&mut self, _t: f64, _feet: &mut Vec<f64>) {}
 
+    /// Whether the motion that `time_to_singular` was asked about last is near a position where the rank drops.
+    fn is_near_singular(&self) -> bool {
+        false
+    }
+
     /// Whether velocities of the motion that was kept last were not projected, as near a singular position.
     fn is_unprojected(&self) -> bool {
         false
@@ -100,6 +106,8 @@ pub(super) struct GeneralField<'a, const D: usize> {
     pub(super) skips: bool,
     /// Whether velocities were not projected in the projection of the motion kept last.
     pub(super) skipped: bool,
+    /// Whether the margin of the last motion that was asked about is below `APPROACH`.
+    is_near: bool,
     /// J at the start of the substep, in a system with rows whose gradient may jump.
     pub(super) before: Vec<f64>,
 }
@@ -107,8 +115,8 @@ pub(super) struct GeneralField<'a, const D: usize> {
 impl<'a, const D: usize> GeneralField<'a, D> {
     /// At a motion where the rows of the workspace have been evaluated.
     pub(super) fn new(system: &'a System, workspace: &'a mut Workspace, feedback: Feedback, is_factored: bool) -> Self {
-        let mut field =
-            GeneralField { system, workspace, feedback, is_factored, skips: false, skipped: false, before: Vec::new() };
+        let (skips, skipped, is_near, before) = (false, false, false, Vec::new());
+        let mut field = GeneralField { system, workspace, feedback, is_factored, skips, skipped, is_near, before };
         field.note_gradients();
         field
     }
@@ -175,17 +183,17 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             let (row, off) = worst_row(system, &equation.rows.C);
             if off <= attainable(system, settings, largest(flat_q)) {
                 equation.factor::<D>(system, 0.0);
-                let margin = equation.margin::<D>(system).filter(|&margin| margin > NEAR);
-                self.skips = margin.is_none();
-                if let Some(margin) = margin {
-                    if margin < APPROACH {
-                        for _ in 0..SHARPENED {
-                            equation.solver.solve(matrix, &equation.rows.C, delta);
-                            equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
-                            equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
-                        }
-                        equation.factor::<D>(system, 0.0);
+                let margin = equation.margin::<D>(system);
+                if margin.is_some_and(|margin| margin < APPROACH) {
+                    for _ in 0..SHARPENED {
+                        equation.solver.solve(matrix, &equation.rows.C, delta);
+                        equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_q);
+                        equation.constrain(system, Motion::<D> { q: flat_q, qd: flat_qd, t });
                     }
+                    equation.factor::<D>(system, 0.0);
+                }
+                self.skips = margin.is_none_or(|margin| margin <= NEAR);
+                if !self.skips {
                     equation.rows.rates::<D>(flat_qd, &mut equation.b.sum);
                     equation.solver.solve(matrix, &equation.b.sum, delta);
                     equation.rows.J.add_impulse::<D>(&system.inverse_mass, delta, -1.0, flat_qd);
@@ -227,7 +235,9 @@ impl<const D: usize> Field for GeneralField<'_, D> {
             equation.factor::<D>(self.system, 0.0);
             self.is_factored = true;
         }
-        let here = equation.margin::<D>(self.system).filter(|&margin| margin < APPROACH)?;
+        let here = equation.margin::<D>(self.system).filter(|&margin| margin < APPROACH);
+        self.is_near = here.is_some();
+        let here = here?;
         let ahead = LOOK_AHEAD * h;
         unpack(q, flat_q);
         unpack(qd, flat_qd);
@@ -237,6 +247,10 @@ impl<const D: usize> Field for GeneralField<'_, D> {
         self.is_factored = false;
         let next = equation.margin::<D>(self.system).unwrap_or(0.0);
         (next < here).then(|| ahead * here / (here - next))
+    }
+
+    fn is_near_singular(&self) -> bool {
+        self.is_near
     }
 
     fn is_unprojected(&self) -> bool {

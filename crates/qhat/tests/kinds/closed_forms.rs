@@ -165,9 +165,9 @@ fn a_bead_keeps_its_speed_round_corners() {
             for (x, e) in simulation.state().positions().iter().zip(expected) {
                 assert_close("place", *x, e, 5.0 * tolerance);
             }
-            // Two rounds of 4 or 5 corners. Measured: 28 attempts a joint at 1e-6, 40 at 1e-9.
+            // Two rounds of 4 or 5 corners. Measured: 37 attempts a joint at 1e-6, 63 at 1e-9.
             let joints = if d == 2 { 16 } else { 20 };
-            assert!(pressed > frames / 4 && attempts < frames + 60 * joints, "{attempts} attempts");
+            assert!(pressed > frames / 4 && attempts < frames + 80 * joints, "{attempts} attempts");
         }
     }
 }

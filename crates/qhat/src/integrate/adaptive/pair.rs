@@ -13,7 +13,8 @@ use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// Part of the extent of the system below which the way of the fastest particle in one substep counts as rest.
+/// Part of the extent of the system below which the way of the fastest particle in one h counts as rest. Over a substep
+/// it would be another speed for each length: where substeps shrink, as at a force that jumps, all errors would pass.
 const AT_REST: f64 = 1e-3;
 
 /// Order from which on a pair crosses singular positions. Stages leave C = 0 by their own error, and the force that
@@ -27,10 +28,11 @@ const CROSSES: u32 = 7;
 /// 1588 of them in place of 830 (`benches/results/workloads.csv`).
 pub(crate) const ERROR_SCALE: f64 = 4.0;
 
-/// The speed to which errors of velocities are relative [m/s], where the fastest particle has the speed `fastest`.
-pub(crate) fn reference_speed(system: &System, fastest: f64, h: f64) -> f64 {
+/// The speed to which errors of velocities are relative [m/s], where the fastest particle has the speed `fastest`, and
+/// comes to rest if it takes more than a time of `long` \[s\] for a thousandth of the extent.
+pub(crate) fn reference_speed(system: &System, fastest: f64, long: f64) -> f64 {
     // A system at rest to roundoff has no speed to compare with.
-    fastest.max(AT_REST * system.extent / h)
+    fastest.max(AT_REST * system.extent / long)
 }
 
 /// The norm of the error estimate: the root mean square over all coordinates, of positions relative to the extent or of
@@ -161,9 +163,11 @@ impl<F: Field> PairStepper<'_, F> {
         self.field.begin(state, &mut self.stages.q, &mut self.stages.qd);
     }
 
-    /// The speed to which errors of velocities are relative [m/s].
+    /// The speed to which errors of velocities are relative [m/s]. Near a singular position accelerations of stages are
+    /// good to no digit across the motion, so shorter substeps are no better: there the way in the substep counts.
     pub(crate) fn speed(&self, h: f64) -> f64 {
-        reference_speed(self.system, vector_unit().dispatch(Largest(&self.stages.next_qd)), h)
+        let long = if self.field.is_near_singular() { h.min(self.settings.h) } else { self.settings.h };
+        reference_speed(self.system, vector_unit().dispatch(Largest(&self.stages.next_qd)), long)
     }
 
     /// The way that the projection moved the motion, in the norm of the error estimate.

@@ -53,6 +53,9 @@ impl Substeps<'_> {
             // A projection goes on to half the tolerance, but what is within the tolerance is not off.
             let within = attainable(system, self.settings, largest(&tried.q)).max(self.settings.constraint_tolerance);
             let is_off = off > within;
+            // A drive that reaches the end of its linkage asks for more and more: the other rows come to depend on each
+            // other, and no force is large.
+            let ends = || drive_ends(system, time, &rows);
             match refusal {
                 Some(Refusal::Jump) if is_off => {
                     let (row, residual) = (system.row_names[worst].clone(), rows.C[worst]);
@@ -60,9 +63,9 @@ impl Substeps<'_> {
                 }
                 Some(Refusal::Jump) => {
                     let jump = jump().or_else(|| rate_jumps::<D>(system, self.settings, state, end));
-                    return jump.unwrap_or(StepError::OutOfBalance { time });
+                    return jump.or_else(ends).unwrap_or(StepError::OutOfBalance { time });
                 }
-                Some(Refusal::Balance) => return StepError::OutOfBalance { time },
+                Some(Refusal::Balance) => return ends().unwrap_or(StepError::OutOfBalance { time }),
                 None if is_off && off.is_finite() => {
                     let error = not_satisfied(system, time, &rows);
                     // A drive that jumps may be followed at the end of a step.
@@ -76,8 +79,6 @@ impl Substeps<'_> {
             }
             // Sums of finite numbers may overflow; then no particle is to blame more than another.
             let first = || StepError::NotFinite { time, particle: system.first_moving() };
-            // A drive that reaches the end of its linkage asks for more and more, and no force is large.
-            let ends = || drive_ends(system, time, &rows);
             self.runaway(state, 1.0).or_else(ends).or_else(|| self.runaway(state, 0.0)).unwrap_or_else(first)
         })
     }
