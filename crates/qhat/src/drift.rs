@@ -5,6 +5,10 @@ use crate::point::{block, larger, minus, norm};
 use crate::settings::Settings;
 use crate::system::System;
 
+/// Part of |C| that counts in a row that follows from others everywhere. Such a row is as exact as the rows that it
+/// follows from, up to the shape of its clique; where it is off by ten thousand tolerances, it does not follow.
+const FOLLOWING: f64 = 1e-4;
+
 /// The residuals of one motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
@@ -12,7 +16,7 @@ pub(crate) struct Drift {
     pub(crate) residual: f64,
     /// max |Ċ|.
     pub(crate) residual_rate: f64,
-    /// max |C| over the row's own scale, of the rows that are held, and the row; NaN counts as infinite.
+    /// max |C| over the row's own scale, and the row; NaN counts as infinite.
     pub(crate) relative: f64,
     pub(crate) worst_row: usize,
     /// max ||d| − r|/r over the rigid rods.
@@ -30,10 +34,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
             drift.residual = larger(drift.residual, rows.C[row].abs());
             drift.residual_rate = larger(drift.residual_rate, rows.Cd[row].abs());
         }
-        if !system.is_held(row) {
-            continue;
-        }
-        let relative = rows.C[row].abs() / system.row_scale[row];
+        let relative = weight(system, row) * rows.C[row].abs() / system.row_scale[row];
         let relative = if relative.is_nan() { f64::INFINITY } else { relative };
         if relative > drift.relative {
             (drift.relative, drift.worst_row) = (relative, row);
@@ -51,14 +52,21 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
     drift
 }
 
-/// The row that is held with the largest |C| over its scale, and that number; NaN counts as infinite.
+/// The part of |C| of a row that counts: 1 where the row is held, 0 where it is soft.
+fn weight(system: &System, row: usize) -> f64 {
+    match () {
+        () if system.is_held(row) => 1.0,
+        () if system.softness[row].is_rigid() => FOLLOWING,
+        () => 0.0,
+    }
+}
+
+/// The rigid row with the largest |C| over its scale, and that number; NaN counts as infinite.
 pub(crate) fn worst_row(system: &System, C: &[f64]) -> (usize, f64) {
     let mut worst = (0, 0.0);
     for (row, (residual, scale)) in C.iter().zip(&system.row_scale).enumerate() {
-        if !system.is_held(row) {
-            continue;
-        }
-        let relative = residual.abs() / scale;
+        let weight = weight(system, row);
+        let relative = if weight > 0.0 { weight * residual.abs() / scale } else { 0.0 };
         if relative.is_nan() {
             return (row, f64::INFINITY);
         }
