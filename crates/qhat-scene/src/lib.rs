@@ -59,6 +59,6 @@ pub use error::{SceneError, SceneErrors};
 pub use load::{Format, from_utf16, load, load_bytes, load_bytes_with, load_with};
 pub use model::{AtEnd, Axis, Expect, Motion, Period, SpeedAtEnd, Tension};
 pub use report::fitted;
-pub use scene::Scene;
+pub use scene::{Scene, SceneBody};
 pub use schema::json_schema;
 pub use shipped::{Shipped, shipped};

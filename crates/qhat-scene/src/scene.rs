@@ -3,7 +3,7 @@
 use crate::error::SceneErrors;
 use crate::load::{Format, load_with};
 use crate::model::Expect;
-use qhat::{Settings, Simulation, State, StepError, System};
+use qhat::{ParticleId, Settings, Simulation, State, StepError, System};
 use std::sync::Arc;
 
 /// A scene, ready to simulate.
@@ -24,8 +24,19 @@ pub struct Scene {
     pub duration: f64,
     /// The results that the scene must show.
     pub expect: Option<Expect>,
+    /// The rigid bodies, in the order of the file.
+    pub bodies: Vec<SceneBody>,
     /// The text of a scene with parameters, from which it is built anew.
     pub(crate) source: Option<Source>,
+}
+
+/// A rigid body of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneBody {
+    /// The prefix of the ids of its particles.
+    pub name: String,
+    /// Its particles.
+    pub particles: Vec<ParticleId>,
 }
 
 /// The text of a scene.

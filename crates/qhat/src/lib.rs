@@ -161,7 +161,7 @@ mod threads;
 mod words;
 
 pub use allowed::{GeometryError, ValueError};
-pub use body::{Body, BodyError};
+pub use body::{Body, BodyError, Pose};
 pub use cluster::{RigidCluster, rigid_cluster, rigid_rods};
 #[doc(inline)]
 pub use constraint::*;
@@ -185,7 +185,7 @@ pub use report::{Event, EventKind, MaxTension, Projection, RepeatedWarning, Solv
 #[cfg(feature = "serde")]
 pub use saved::RestoreError;
 pub use settings::{Feedback, Integrator, Settings, SettingsError};
-pub use simulation::Simulation;
+pub use simulation::{Powers, Simulation};
 pub use softness::SoftRow;
 pub use space::{ConstraintId, Dimension, ForceId, ParticleId};
 pub use state::{State, Work};

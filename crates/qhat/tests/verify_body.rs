@@ -3,7 +3,8 @@
 use crate::systems::dense::{assert_all_close, assert_close};
 use crate::systems::{self, gravity, swing};
 use qhat::{
-    Body, BodyError, Dimension, Distance, Nail, Particle, ParticleId, Relation, Settings, Simulation, SystemBuilder,
+    Body, BodyError, Dimension, Distance, Nail, Particle, ParticleId, Pose, Relation, Settings, Simulation,
+    SystemBuilder,
 };
 
 /// m, c and Σ m (x − c)(x − c)ᵀ of particles.
@@ -269,4 +270,75 @@ fn a_free_body_tumbles_as_euler_says() {
     assert!(flips >= 2, "{flips}");
     // Each projection keeps both to 1e-13, the tolerance of the rods.
     assert!(simulation.energy_error_max() < 1e-11, "{:e}", simulation.energy_error_max());
+}
+
+/// A vector turned by a unit quaternion: x + 2 w (u × x) + 2 u × (u × x).
+fn turned([w, u @ ..]: [f64; 4], x: [f64; 3]) -> [f64; 3] {
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let once = cross(u, x);
+    let twice = cross(u, once);
+    std::array::from_fn(|k| x[k] + 2.0 * w * once[k] + 2.0 * twice[k])
+}
+
+/// The pose of every shape of body after turns about axes without a pattern, half turns among them: the turn takes each
+/// particle to where it is, and the spin is the one that it was given.
+#[test]
+fn poses_are_the_turns_and_spins_that_bodies_were_given() {
+    let bodies = [
+        Body::block(1.7, [0.3, -0.4, 0.5], &EDGES).unwrap(),
+        Body::block(1.7, [0.3, -0.4, 0.5], &EDGES[..2]).unwrap(),
+        Body::block(1.7, [0.3, -0.4, 0.5], &EDGES[..1]).unwrap(),
+        Body::bar_in_space(1.2, [[0.1, 0.2, 0.3], [1.0, -0.5, 0.4]]).unwrap(),
+    ];
+    let (v, shift) = ([0.2, -0.7, 0.4], [5.0, -3.0, 2.0]);
+    for (which, body) in bodies.iter().enumerate() {
+        for k in 0..40 {
+            let axis = [0.3 + 0.1 * k as f64, -0.8, 0.02 * (k * k) as f64];
+            let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // Multiples of an eighth of a turn, up to one and a quarter.
+            let (sine, cosine) = libm::sincos(std::f64::consts::PI / 8.0 * (k % 11) as f64);
+            let turn = [cosine, sine * axis[0] / length, sine * axis[1] / length, sine * axis[2] / length];
+            let moved = Body {
+                points: body.points.iter().map(|&x| std::array::from_fn(|k| turned(turn, x)[k] + shift[k])).collect(),
+                ..body.clone()
+            };
+            let omega = [1.5, -0.4, 2.5];
+            let pose = Pose::new(&body.masses, &body.points, &moved.points, &moved.velocities(v, omega));
+            let what = format!("body {which}, turn {k}");
+            assert_all_close(&what, &pose.center, &moved.center(), ROUNDING * 10.0);
+            assert_all_close(&what, &pose.velocity, &v, ROUNDING);
+            let before = body.center();
+            for (&from, &to) in body.points.iter().zip(&moved.points) {
+                let offset = std::array::from_fn(|k| from[k] - before[k]);
+                let expected: [f64; 3] = std::array::from_fn(|k| to[k] - pose.center[k]);
+                // Frames of directions lose a digit or two in the shortest side of the body.
+                assert_all_close(&what, &turned(pose.rotation, offset), &expected, 1e-13);
+            }
+            let (_, _, S) = moments(&moved.points, &body.masses);
+            let I = inertia(S);
+            let L: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| I[i][j] * omega[j]).sum());
+            assert_all_close(&what, &pose.angular_momentum, &L, 1e-13);
+            if which < 2 {
+                assert_all_close(&what, &pose.spin, &omega, 1e-12);
+            } else {
+                // Of a body in one line the part of ω along the line has no meaning.
+                let back: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| I[i][j] * pose.spin[j]).sum());
+                assert_all_close(&what, &back, &L, 1e-13);
+            }
+        }
+    }
+    // In the plane the angle counts from −π to π, half turns of bars included.
+    let bar = Body::block(1.0, [0.0; 3], &[[2.0, 0.0, 0.0]]).unwrap();
+    for (angle, expected) in
+        [(3.0, 3.0), (4.0, 4.0 - std::f64::consts::TAU), (std::f64::consts::PI, std::f64::consts::PI)]
+    {
+        let (sine, cosine) = libm::sincos(angle);
+        let points: Vec<[f64; 3]> = bar.points.iter().map(|x| [cosine * x[0], sine * x[0], 0.0]).collect();
+        let found = Pose::new(&bar.masses, &bar.points, &points, &bar.points).angle();
+        assert!(
+            (found - expected).abs() < 1e-14 || (found + expected).abs() < 1e-14 && angle > 3.1,
+            "{found} {expected}"
+        );
+    }
 }

@@ -6,6 +6,7 @@ pub(crate) mod frames;
 pub(crate) mod interrupt;
 mod origin;
 pub(crate) mod progress;
+mod reading;
 mod snapshot;
 mod summary;
 
@@ -13,15 +14,16 @@ use crate::arguments;
 use crate::failure::{BAD_INPUT, Failure, warn};
 use crate::print;
 use crate::source::Source;
-use crate::trajectory::{Extras, Format, Frame, Kept, Quantity, Recorder, Stored, Target};
+use crate::trajectory::{Extras, Format, Frame, Kept, Quantity, Recorder, Stored, Subjects, Target};
 use checkpoints::Checkpoints;
 use cpu_time::ProcessTime;
 use frames::Frames;
 use interrupt::Interrupt;
 use origin::Origin;
 use progress::Progress;
-use qhat::{Energy, Settings, Simulation, StepError, System, Terms, evaluate};
+use qhat::{Settings, Simulation, StepError, System};
 use qhat_scene::Scene;
+use reading::Reader;
 use snapshot::Former;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -41,7 +43,9 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
         (None, Some(selected)) => selected.to_vec(),
         (None, None) => Quantity::USUAL.to_vec(),
     };
-    let mut recorder = target.map(|target| Recorder::new(target, &scene.system, quantities)).transpose()?;
+    let reader = Reader::new(&scene, if target.is_some() { &quantities } else { &[] });
+    let subjects = Subjects { system: &scene.system, bodies: &scene.bodies };
+    let mut recorder = target.map(|target| Recorder::new(target, subjects, quantities)).transpose()?;
     if let (Some(recorder), Some(before)) = (&mut recorder, &mut before) {
         recorder.take(before)?;
     }
@@ -49,9 +53,8 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
 
     let progress = Progress::new(frames, arguments.quiet);
     let checkpoints = arguments.checkpoint.map(Checkpoints::new);
-    let mut job = Job { frames, recorder, tally: Tally::default(), progress, interrupt, checkpoints };
-    // In a CSV there is no place for events.
-    job.tally.all_events = matches!(job.recorder, Some(Recorder::Npz(_))).then(Vec::new);
+    let mut job = Job { frames, reader, recorder, tally: Tally::default(), progress, interrupt, checkpoints };
+    job.tally.all_events = job.recorder.is_some().then(Vec::new);
     let snapshot =
         |tally: &Tally, simulation: &Simulation| snapshot::bytes(&source, &parameters, frames, tally, simulation);
     let keep = |tally: &Tally, simulation: &Simulation| {
@@ -80,8 +83,8 @@ pub(crate) fn run(arguments: &arguments::Run) -> Result<ExitCode, Failure> {
         }
         // Where no positions satisfy the constraints, the start is the only frame.
         Err(error) => {
-            let unknown = Energy { kinetic: f64::NAN, potential: f64::NAN, ..Energy::default() };
-            job.start(&system, &evaluate(&system, &state), unknown)?;
+            let frame = job.reader.read_start(&system, &state);
+            job.start(&system, &frame)?;
             (Some(Stop::Error(error)), None)
         }
     };
@@ -191,6 +194,7 @@ enum Stop {
 /// A run in progress.
 struct Job {
     frames: Frames,
+    reader: Reader,
     recorder: Option<Recorder>,
     tally: Tally,
     progress: Progress,
@@ -206,8 +210,8 @@ impl Job {
     fn simulate(&mut self, simulation: &mut Simulation, keep: Keep<'_>) -> Result<Option<Stop>, Failure> {
         if self.tally.frames == 0 {
             self.tally.begun(simulation);
-            let terms = simulation.terms();
-            self.start(simulation.system(), &terms, simulation.energy())?;
+            let frame = self.reader.read(simulation, 0.0);
+            self.start(simulation.system(), &frame)?;
         }
         for index in self.tally.frames..=self.frames.count {
             if self.interrupt.came() {
@@ -224,9 +228,8 @@ impl Job {
                 Err(error) => return Ok(Some(Stop::Error(error))),
             }
             if self.recorder.is_some() {
-                let terms = simulation.terms();
-                let (time, energy) = (self.frames.time(index), simulation.energy());
-                if let Err(failure) = self.record(simulation.system(), &Frame { time, terms: &terms, energy }) {
+                let frame = self.reader.read(simulation, self.frames.time(index));
+                if let Err(failure) = self.record(simulation.system(), &frame) {
                     return Ok(Some(Stop::Unwritten(failure)));
                 }
             } else {
@@ -240,13 +243,13 @@ impl Job {
         Ok(None)
     }
 
-    fn start(&mut self, system: &System, terms: &Terms, energy: Energy) -> Result<(), Failure> {
-        self.tally.start(system, terms);
-        self.record(system, &Frame { time: 0.0, terms, energy })
+    fn start(&mut self, system: &System, frame: &Frame) -> Result<(), Failure> {
+        self.tally.start(system, &frame.terms);
+        self.record(system, frame)
     }
 
-    fn record(&mut self, system: &System, frame: &Frame<'_>) -> Result<(), Failure> {
-        self.tally.frame(system, frame.time, frame.terms);
+    fn record(&mut self, system: &System, frame: &Frame) -> Result<(), Failure> {
+        self.tally.frame(system, frame.time, &frame.terms);
         match &mut self.recorder {
             Some(recorder) => recorder.frame(frame),
             None => Ok(()),

@@ -1,10 +1,12 @@
-//! CSV: a header, then one line a frame. The format has no place for the origin, which goes into FILE.csv.json.
+//! CSV: a header, then one line a frame. The format has no place for the origin, which goes into FILE.csv.json, nor for
+//! the events, which go into FILE.csv.events.csv.
 
 use super::Kept;
-use super::quantity::{Frame, Quantity};
+use super::events::speed;
+use super::quantity::{Frame, Quantity, Subjects};
 use super::target::Target;
 use crate::failure::Failure;
-use qhat::System;
+use qhat::Event;
 use std::fmt::Write as _;
 use std::io::{self, Read, Seek, SeekFrom, Write as _};
 use tempfile::NamedTempFile;
@@ -25,15 +27,15 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    pub(super) fn new(target: Target, system: &System, quantities: Vec<Quantity>) -> Result<Self, Failure> {
+    pub(super) fn new(target: Target, subjects: Subjects<'_>, quantities: Vec<Quantity>) -> Result<Self, Failure> {
         let (file, lines) = (target.temporary()?, csv::Writer::from_writer(Vec::new()));
-        let columns: Vec<String> = quantities.iter().flat_map(|quantity| quantity.columns(system)).collect();
+        let columns: Vec<String> = quantities.iter().flat_map(|quantity| quantity.columns(subjects)).collect();
         let mut recorder = Recorder { target, quantities, file, written: 0, lines, number: String::new() };
         recorder.lines.write_record(columns).map_err(|error| recorder.failed(&io::Error::other(error)))?;
         Ok(recorder)
     }
 
-    pub(super) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+    pub(super) fn frame(&mut self, frame: &Frame) -> Result<(), Failure> {
         let rows: Vec<_> = self.quantities.iter().map(|quantity| quantity.row(frame)).collect();
         let numbers = rows.iter().flat_map(|row| row.iter());
         self.add(numbers).map_err(|error| self.failed(&io::Error::other(error)))?;
@@ -41,14 +43,20 @@ impl Recorder {
         outcome.map_err(|error| self.failed(&error))
     }
 
-    /// Puts the origin and the lines in place. On a full disk the last half of the lines is given up, again and again,
-    /// until the origin fits beside the rest.
-    pub(super) fn finish(mut self, whole: &str, part: &str) -> Result<Kept, Failure> {
+    /// Puts the origin, the events and the lines in place. On a full disk the last half of the lines is given up, again
+    /// and again, until the others fit beside the rest.
+    pub(super) fn finish(mut self, whole: &str, part: &str, events: &[Event]) -> Result<Kept, Failure> {
         let mut kept = if self.write().is_ok() { Kept::Whole } else { Kept::Part };
         loop {
-            // The origin comes first, so that no CSV is ever without its origin.
-            let origin = if kept == Kept::Whole { whole } else { part };
-            match self.target.put_origin(origin) {
+            // Origin and events come first, so that no CSV is ever without them.
+            let (origin, last) = match kept {
+                Kept::Whole => (whole, f64::INFINITY),
+                _ => (part, self.last_time().unwrap_or(f64::INFINITY)),
+            };
+            let events = &events[..events.partition_point(|event| event.time <= last)];
+            let table = (!events.is_empty()).then(|| event_table(events)).transpose();
+            let table = table.map_err(|error| self.failed(&io::Error::other(error)))?;
+            match self.target.put_origin(origin).and_then(|()| self.target.put_events(table.as_deref())) {
                 Ok(()) => return self.target.put(self.file).map(|()| kept),
                 Err(failure) => {
                     let is_cut = self.give_up_half();
@@ -96,6 +104,14 @@ impl Recorder {
         }
     }
 
+    /// t of the last line \[s\], which is its first number; `None` if there is no line behind the header.
+    fn last_time(&mut self) -> Option<f64> {
+        let mut text = String::new();
+        let file = self.file.as_file_mut();
+        file.rewind().and_then(|()| file.read_to_string(&mut text)).ok()?;
+        text.lines().last()?.split(',').next()?.parse().ok()
+    }
+
     fn cut(&mut self) -> io::Result<()> {
         let file = self.file.as_file_mut();
         file.set_len(self.written)?;
@@ -115,4 +131,15 @@ impl Recorder {
     fn failed(&self, error: &io::Error) -> Failure {
         self.target.cannot_write(error)
     }
+}
+
+/// The events as a CSV: a header, then one line an event.
+fn event_table(events: &[Event]) -> csv::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["t", "constraint", "kind", "speed", "impulse"])?;
+    for event in events {
+        let [t, speed, impulse] = [event.time, speed(event), event.impulse].map(|number| format!("{number:?}"));
+        table.write_record([&t, &event.constraint, event.kind.name(), &speed, &impulse])?;
+    }
+    table.into_inner().map_err(|error| error.into_error().into())
 }

@@ -1,19 +1,20 @@
 //! Trajectories on disk: each frame adds one row to every array. The output gets its name when it is complete.
 
 mod csv;
+mod events;
 mod npy;
 mod npz;
 mod quantity;
 mod stored;
 mod target;
 
-pub(crate) use quantity::{Frame, Quantity, selection};
+pub(crate) use quantity::{Frame, Quantity, Subjects, selection};
 pub(crate) use stored::Stored;
 pub(crate) use target::Target;
 
 use crate::failure::Failure;
 use crate::output::ending;
-use qhat::{Event, System};
+use qhat::Event;
 use std::path::Path;
 
 /// The format of a trajectory.
@@ -69,15 +70,15 @@ pub(crate) enum Recorder {
 
 impl Recorder {
     /// Opens temporary files beside the target.
-    pub(crate) fn new(target: Target, system: &System, quantities: Vec<Quantity>) -> Result<Self, Failure> {
+    pub(crate) fn new(target: Target, subjects: Subjects<'_>, quantities: Vec<Quantity>) -> Result<Self, Failure> {
         Ok(match target.format() {
-            Format::Npz => Recorder::Npz(npz::Recorder::new(target, system, &quantities)?),
-            Format::Csv => Recorder::Csv(Box::new(csv::Recorder::new(target, system, quantities)?)),
+            Format::Npz => Recorder::Npz(npz::Recorder::new(target, subjects, &quantities)?),
+            Format::Csv => Recorder::Csv(Box::new(csv::Recorder::new(target, subjects, quantities)?)),
         })
     }
 
     /// Adds a frame.
-    pub(crate) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+    pub(crate) fn frame(&mut self, frame: &Frame) -> Result<(), Failure> {
         match self {
             Recorder::Npz(recorder) => recorder.frame(frame),
             Recorder::Csv(recorder) => recorder.frame(frame),
@@ -101,11 +102,11 @@ impl Recorder {
     }
 
     /// Puts the finished files in place, with the origin, a line of JSON: `whole` with all frames, or `part` where the
-    /// last frames could not be written. An NPZ keeps the extras, too.
+    /// last frames could not be written. An NPZ keeps the snapshot.
     pub(crate) fn finish(self, whole: &str, part: &str, extras: Extras<'_>) -> Result<Kept, Failure> {
         match self {
             Recorder::Npz(recorder) => recorder.finish(whole, part, extras),
-            Recorder::Csv(recorder) => recorder.finish(whole, part),
+            Recorder::Csv(recorder) => recorder.finish(whole, part, extras.events),
         }
     }
 }

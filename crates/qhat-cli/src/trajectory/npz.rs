@@ -4,13 +4,14 @@
 //! each array grows in a file of its own, and the zip is written at the end. On a full disk the first frames are kept,
 //! as many as fit.
 
+use super::events::speed;
 use super::npy;
-use super::quantity::{ENERGIES, Frame, Quantity};
+use super::quantity::{Frame, Quantity, Subjects};
 use super::stored::Stored;
 use super::target::Target;
 use super::{Extras, Kept};
 use crate::failure::Failure;
-use qhat::{Event, EventKind, System};
+use qhat::Event;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use tempfile::NamedTempFile;
@@ -70,9 +71,10 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    pub(super) fn new(target: Target, system: &System, quantities: &[Quantity]) -> Result<Self, Failure> {
+    pub(super) fn new(target: Target, subjects: Subjects<'_>, quantities: &[Quantity]) -> Result<Self, Failure> {
+        let system = subjects.system;
         let array = |&quantity: &Quantity| -> Result<Array, Failure> {
-            Ok(Array { quantity, shape: quantity.shape(system), file: BufWriter::new(target.scratch()?) })
+            Ok(Array { quantity, shape: quantity.shape(subjects), file: BufWriter::new(target.scratch()?) })
         };
         let arrays = quantities.iter().map(array).collect::<Result<Vec<_>, _>>()?;
         let mut names = vec![
@@ -80,8 +82,10 @@ impl Recorder {
             ("row_names", system.row_names().to_vec()),
             ("link_names", system.links().map(|link| link.name.to_owned()).collect()),
         ];
-        if quantities.contains(&Quantity::Energy) {
-            names.push(("energy_names", ENERGIES.map(str::to_owned).to_vec()));
+        for own in quantities.iter().filter_map(|quantity| quantity.names(subjects)) {
+            if !names.iter().any(|(name, _)| *name == own.0) {
+                names.push(own);
+            }
         }
         let masses = system.inverse_masses().iter().map(|w| 1.0 / w);
         let masses =
@@ -115,7 +119,7 @@ impl Recorder {
         Ok(())
     }
 
-    pub(super) fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Failure> {
+    pub(super) fn frame(&mut self, frame: &Frame) -> Result<(), Failure> {
         let mut arrays = self.arrays.iter_mut();
         match arrays.try_for_each(|array| array.append(&array.quantity.row(frame))) {
             Ok(()) => {
@@ -244,7 +248,6 @@ fn event_arrays(events: &[Event]) -> [(&'static str, Vec<u8>); 5] {
     let numbers = |of: &dyn Fn(&Event) -> f64| npy::numbers(&events.iter().map(of).collect::<Vec<f64>>());
     let texts =
         |of: &dyn Fn(&Event) -> String| npy::texts(&[events.len()], &events.iter().map(of).collect::<Vec<String>>());
-    let speed = |event: &Event| if let EventKind::Impact { speed } = event.kind { speed } else { 0.0 };
     [
         ("event_t", numbers(&|event| event.time)),
         ("event_constraint", texts(&|event| event.constraint.clone())),

@@ -24,7 +24,7 @@ impl Target {
         let format = Format::of(path)?;
         let companions = match format {
             Format::Npz => Vec::new(),
-            Format::Csv => vec![origin_path(path)],
+            Format::Csv => vec![beside(path, "json"), beside(path, "events.csv")],
         };
         Ok(Target { output: Output::new(path, &companions, force)?, format })
     }
@@ -61,7 +61,18 @@ impl Target {
     pub(crate) fn put_origin(&self, origin: &str) -> Result<(), Failure> {
         let mut file = self.temporary()?;
         writeln!(file, "{origin}").map_err(|error| self.cannot_write(&error))?;
-        self.output.put_as(file, &origin_path(self.path()))
+        self.output.put_as(file, &beside(self.path(), "json"))
+    }
+
+    /// Writes the events of a CSV beside it; where there are none, removes those of a former run.
+    pub(crate) fn put_events(&self, table: Option<&[u8]>) -> Result<(), Failure> {
+        let Some(table) = table else {
+            let _ = std::fs::remove_file(beside(self.path(), "events.csv"));
+            return Ok(());
+        };
+        let mut file = self.temporary()?;
+        file.write_all(table).map_err(|error| self.cannot_write(&error))?;
+        self.output.put_as(file, &beside(self.path(), "events.csv"))
     }
 
     /// The failure of a write.
@@ -70,8 +81,10 @@ impl Target {
     }
 }
 
-fn origin_path(path: &Path) -> PathBuf {
+/// The path of a file that belongs to a CSV.
+fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
-    name.push(".json");
+    name.push(".");
+    name.push(ending);
     name.into()
 }

@@ -2,6 +2,7 @@
 
 use super::{Assembly, MOST_PARTICLES};
 use crate::model::body::{Body, Common};
+use crate::scene::SceneBody;
 use qhat::{Distance, Particle, ParticleId, Relation};
 use std::ops::Range;
 
@@ -61,7 +62,7 @@ impl Assembly<'_, '_, '_> {
     }
 
     /// Adds the rods and midpoints of all bodies.
-    pub(super) fn hold_bodies(&mut self, unheld: &[Unheld]) {
+    pub(super) fn hold_bodies(&mut self, unheld: Vec<Unheld>) {
         for Unheld { body, ids, prefix } in unheld {
             for (rod, &[a, b]) in body.rods.iter().enumerate() {
                 let name = self.free_name(format!("{prefix}{a}-{prefix}{b}"));
@@ -73,6 +74,7 @@ impl Assembly<'_, '_, '_> {
                 let [middle, a, b] = [middle, a, b].map(|particle| ids[particle]);
                 self.builder.constraint(name, Relation::midpoint(middle, a, b));
             }
+            self.bodies.push(SceneBody { name: prefix, particles: ids });
         }
     }
 }

@@ -27,7 +27,7 @@ mod wheels;
 use crate::model::{Document, Parameters, Step};
 use crate::parameters::Use;
 use crate::report::Report;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneBody};
 use crate::tree::Node;
 use expressions::Untried;
 use ids::Ids;
@@ -64,6 +64,7 @@ struct Assembly<'a, 'r, 't> {
     /// The place in the text of the constraint that is being added.
     adding: Range<usize>,
     made: Made,
+    bodies: Vec<SceneBody>,
 }
 
 /// The scene, or `None` after reporting every error.
@@ -84,10 +85,11 @@ pub(crate) fn build(document: Document, tree: &Node, uses: Vec<Use>, report: &mu
         places: Places::new(),
         adding: 0..0,
         made: Made::default(),
+        bodies: Vec::new(),
     };
     assembly.add_all(&document)?;
     assembly.declare(uses);
-    let Assembly { builder, report, ids, untried, places, .. } = assembly;
+    let Assembly { builder, report, ids, untried, places, bodies, .. } = assembly;
     let (system, state) = match builder.build() {
         Ok(built) => built,
         Err(error) => {
@@ -109,7 +111,8 @@ pub(crate) fn build(document: Document, tree: &Node, uses: Vec<Use>, report: &mu
         return None;
     }
     let Document { name, description, expect, step, .. } = document;
-    Some(Scene { name, description, system, state, settings, duration: step.duration, expect, source: None })
+    let duration = step.duration;
+    Some(Scene { name, description, system, state, settings, duration, expect, bodies, source: None })
 }
 
 fn settings(step: &Step) -> Settings {
@@ -140,7 +143,7 @@ impl Assembly<'_, '_, '_> {
         self.take_parameters(&document.parameters);
         self.add_constraints(&document.constraints);
         self.add_links(&unlinked);
-        self.hold_bodies(&unheld);
+        self.hold_bodies(unheld);
         self.add_springs(&document.springs);
         self.add_loads(&document.loads);
         if let Some(gravity) = &document.forces.gravity {

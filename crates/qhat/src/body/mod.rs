@@ -26,8 +26,10 @@
 
 mod error;
 mod factor;
+mod pose;
 
 pub use error::BodyError;
+pub use pose::Pose;
 
 use crate::number::cross;
 use crate::point::{add, dot, minus, norm, scaled};

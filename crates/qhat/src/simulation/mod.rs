@@ -4,6 +4,7 @@ mod account;
 mod change;
 mod hand;
 mod look;
+mod power;
 #[cfg(feature = "serde")]
 mod saved;
 
@@ -17,6 +18,7 @@ use crate::state::State;
 use crate::structure::FlatClique;
 use crate::system::System;
 use account::EnergyAccount;
+pub use power::Powers;
 
 /// A system in motion: [`step`](Self::step) or [`advance`](Self::advance) it, look at its
 /// [tensions](Self::links), [reactions](Self::reaction) and [energy](Self::energy), change

@@ -35,6 +35,13 @@ impl System {
         (index < self.constraints().len()).then_some(ConstraintId(index))
     }
 
+    /// The names of the forces of the builder, in the order of addition: that under which a force was added, else its
+    /// kind and its place from 0, as in `Spring 3`.
+    pub fn force_names(&self) -> Vec<String> {
+        let named = self.force_names.iter().zip(&self.forces).enumerate();
+        named.map(|(k, (name, force))| name.clone().unwrap_or_else(|| format!("{} {k}", force.kind()))).collect()
+    }
+
     /// The force at a place in the order of addition to the builder, from 0.
     pub fn force_at(&self, index: usize) -> Option<ForceId> {
         (index < self.force_names.len()).then_some(ForceId(index))

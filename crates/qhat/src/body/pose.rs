@@ -1,0 +1,174 @@
+//! Pose: where a rigid group of particles is, how it is turned, and how it moves.
+//!
+//! ```text
+//! c = Σ m_i x_i / m,   v = Σ m_i v_i / m,   L = Σ m_i (x_i − c) × (v_i − v)            m, m/s, kg m²/s
+//! x_i − c = R (X_i − C)                X: the positions to which the turn is relative
+//! I ω = L,   I = tr(S) 1 − S,   S = Σ m_i (x_i − c)(x_i − c)ᵀ
+//! ```
+//!
+//! R takes the directions to two particles, the farthest from c and the farthest across that, to their present
+//! directions. A group in one line has no turn about itself: R is then the shortest turn, and ω lies across the line.
+
+use crate::number::cross;
+use crate::point::{dot, minus, norm, scaled};
+
+/// Part of the size of a group below which its particles lie in one line.
+const IN_LINE: f64 = 1e-9;
+
+/// The pose and motion of a rigid group of particles. In two dimensions z is 0 and turns are about z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Pose {
+    /// c, the centre of mass \[m\].
+    pub center: [f64; 3],
+    /// R as a unit quaternion (w, x, y, z), w not negative \[1\].
+    pub rotation: [f64; 4],
+    /// v, the velocity of the centre of mass [m/s].
+    pub velocity: [f64; 3],
+    /// ω, the angular velocity [rad/s].
+    pub spin: [f64; 3],
+    /// L, the angular momentum about the centre of mass [kg m²/s].
+    pub angular_momentum: [f64; 3],
+}
+
+impl Pose {
+    /// The pose of particles of these masses \[kg\] that have moved as a rigid body from some positions \[m\] to
+    /// others, with these velocities [m/s].
+    ///
+    /// ```
+    /// use qhat::Pose;
+    /// let pose = Pose::new(&[1.0, 1.0], &[[0.0; 3], [2.0, 0.0, 0.0]], &[[5.0, -1.0, 0.0], [5.0, 1.0, 0.0]],
+    ///     &[[3.0, 0.0, 0.0], [-3.0, 0.0, 0.0]]);
+    /// assert_eq!((pose.center, pose.spin), ([5.0, 0.0, 0.0], [0.0, 0.0, 3.0]));
+    /// assert_eq!(pose.angular_momentum, [0.0, 0.0, 6.0]);
+    /// assert!((pose.angle() - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    /// ```
+    ///
+    /// # Panics
+    /// If the lists have different lengths.
+    pub fn new(masses: &[f64], from: &[[f64; 3]], to: &[[f64; 3]], velocities: &[[f64; 3]]) -> Pose {
+        assert!([from.len(), to.len(), velocities.len()] == [masses.len(); 3], "one entry for each particle");
+        let (before, center, velocity) = (mean(masses, from), mean(masses, to), mean(masses, velocities));
+        let from: Vec<[f64; 3]> = from.iter().map(|&x| minus(x, before)).collect();
+        let to: Vec<[f64; 3]> = to.iter().map(|&x| minus(x, center)).collect();
+        let turning = velocities.iter().map(|&v| minus(v, velocity));
+        let mut angular_momentum = [0.0; 3];
+        for ((&mass, &x), v) in masses.iter().zip(&to).zip(turning) {
+            let own = scaled(mass, cross(x, v));
+            angular_momentum = std::array::from_fn(|k| angular_momentum[k] + own[k]);
+        }
+        let rotation = rotation(&from, &to);
+        Pose { center, rotation, velocity, spin: spin(masses, &to, angular_momentum), angular_momentum }
+    }
+
+    /// The angle of the turn about z, between −π and π \[rad\].
+    pub fn angle(&self) -> f64 {
+        let [w, _, _, z] = self.rotation;
+        2.0 * libm::atan2(z, w)
+    }
+}
+
+fn mean(masses: &[f64], vectors: &[[f64; 3]]) -> [f64; 3] {
+    let total: f64 = masses.iter().sum();
+    std::array::from_fn(|k| masses.iter().zip(vectors).map(|(m, x)| m * x[k]).sum::<f64>() / total)
+}
+
+/// The place of the largest number.
+fn largest(numbers: impl Iterator<Item = f64>) -> usize {
+    let best = numbers.enumerate().reduce(|best, next| if next.1 > best.1 { next } else { best });
+    best.map_or(0, |(place, _)| place)
+}
+
+/// The part of a vector across a unit vector.
+fn across(x: [f64; 3], unit: [f64; 3]) -> [f64; 3] {
+    minus(x, scaled(dot(x, unit), unit))
+}
+
+fn unit(x: [f64; 3]) -> [f64; 3] {
+    scaled(1.0 / norm(x), x)
+}
+
+/// R as a quaternion, from the offsets of the particles before and now.
+fn rotation(from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 4] {
+    let far = largest(from.iter().map(|&x| norm(x)));
+    let size = from.get(far).map_or(0.0, |&x| norm(x));
+    if size == 0.0 {
+        return [1.0, 0.0, 0.0, 0.0];
+    }
+    let [a, b] = [from[far], to[far]].map(unit);
+    let beside = largest(from.iter().map(|&x| norm(across(x, a))));
+    if norm(across(from[beside], a)) <= IN_LINE * size {
+        return shortest(a, b);
+    }
+    let frame = |along: [f64; 3], x: [f64; 3]| {
+        let second = unit(across(x, along));
+        [along, second, cross(along, second)]
+    };
+    let (before, now) = (frame(a, from[beside]), frame(b, to[beside]));
+    // R = Σ now_k before_kᵀ.
+    let R: [[f64; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| now[k][i] * before[k][j]).sum()));
+    quaternion(R)
+}
+
+/// The shortest turn from one direction to another.
+fn shortest(a: [f64; 3], b: [f64; 3]) -> [f64; 4] {
+    let w = 1.0 + dot(a, b);
+    if w < 1e-12 {
+        // Opposite directions: half a turn about an axis across them, in the plane about z.
+        let other = if a[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+        let axis = unit(across(other, a));
+        return [0.0, axis[0], axis[1], axis[2]];
+    }
+    let [x, y, z] = cross(a, b);
+    let length = (w * w + x * x + y * y + z * z).sqrt();
+    [w, x, y, z].map(|part| part / length)
+}
+
+/// The quaternion of a rotation matrix, by its largest part.
+/// Source: Shepperd, Quaternion from rotation matrix, J. Guidance and Control 1 (1978) 223.
+fn quaternion(R: [[f64; 3]; 3]) -> [f64; 4] {
+    let trace = R[0][0] + R[1][1] + R[2][2];
+    let squares = [trace, R[0][0], R[1][1], R[2][2]];
+    let place = largest(squares.into_iter());
+    let whole = (1.0 + 2.0 * squares[place] - trace).max(0.0).sqrt();
+    let half = 0.5 / whole;
+    let [yz, zx, xy] = [R[2][1] - R[1][2], R[0][2] - R[2][0], R[1][0] - R[0][1]];
+    let [with_xy, with_zx, with_yz] = [R[0][1] + R[1][0], R[0][2] + R[2][0], R[1][2] + R[2][1]];
+    let found = match place {
+        0 => [0.5 * whole, half * yz, half * zx, half * xy],
+        1 => [half * yz, 0.5 * whole, half * with_xy, half * with_zx],
+        2 => [half * zx, half * with_xy, 0.5 * whole, half * with_yz],
+        _ => [half * xy, half * with_zx, half * with_yz, 0.5 * whole],
+    };
+    let length = found.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let sign = if found[0] < 0.0 { -1.0 } else { 1.0 };
+    found.map(|part| sign * part / length)
+}
+
+/// ω with I ω = L.
+fn spin(masses: &[f64], offsets: &[[f64; 3]], L: [f64; 3]) -> [f64; 3] {
+    let mut S = [[0.0; 3]; 3];
+    for (&mass, x) in masses.iter().zip(offsets) {
+        for i in 0..3 {
+            for j in 0..3 {
+                S[i][j] += mass * x[i] * x[j];
+            }
+        }
+    }
+    let trace = S[0][0] + S[1][1] + S[2][2];
+    if trace == 0.0 {
+        return [0.0; 3];
+    }
+    let inertia: [[f64; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { trace - S[i][j] } else { -S[i][j] }));
+    let [a, b, c] = inertia;
+    let determinant = dot(a, cross(b, c));
+    // I of a line is tr(S) across it and 0 along it, where L is 0, too.
+    if determinant <= IN_LINE * trace * trace * trace {
+        return scaled(1.0 / trace, L);
+    }
+    // Cramer's rule; I is symmetric.
+    let [u, v, w] = [cross(b, c), cross(c, a), cross(a, b)];
+    std::array::from_fn(|k| (u[k] * L[0] + v[k] * L[1] + w[k] * L[2]) / determinant)
+}
