@@ -140,6 +140,11 @@ it('classic and modern forms have their own rows', async () => {
   expect(await rows()).toBe(classic + nails);
 });
 
+/** Waits for an address, which the page writes a moment after the last change of a slider. */
+async function addressIs(page: Page, search: string) {
+  await expect.poll(() => new URL(page.url()).search, { timeout: 30_000 }).toBe(search);
+}
+
 it('a parameter starts the scene again with its value, which the address keeps', async () => {
   const { page } = await lab.open('/?scene=slope&set=mu=0.7');
   const entry = page.getByTestId('entry-parameter-mu');
@@ -156,7 +161,7 @@ it('a parameter starts the scene again with its value, which the address keeps',
   await entry.fill('0.3');
   await entry.press('Enter');
   expect(await downhill()).toBeCloseTo(slides(0.3), 6);
-  expect(new URL(page.url()).search).toBe('?scene=slope&set=mu=0.3');
+  await addressIs(page, '?scene=slope&set=mu=0.3');
   // without friction the block has no rows of friction, and the scene is built anew
   await page.getByTestId('slider-parameter-mu').fill('0');
   expect(await downhill()).toBeCloseTo(slides(0), 6);
@@ -166,7 +171,7 @@ it('a parameter starts the scene again with its value, which the address keeps',
   expect(await row.getByRole('alert').innerText()).toContain('must be at least 0 and at most 1, but is 2');
   await row.getByRole('button').click();
   expect(await entry.inputValue()).toBe('0.5');
-  expect(new URL(page.url()).search).toBe('?scene=slope');
+  await addressIs(page, '?scene=slope');
 });
 
 it('a parameter in the address that the scene does not have is refused in words', async () => {

@@ -1,4 +1,4 @@
-//! Reading: what a frame tells, of which only the arrays that are asked for are computed.
+//! Reading: the numbers of a frame. Powers and poses are computed only where an array of them is asked for.
 
 use crate::trajectory::{Frame, Quantity};
 use qhat::{Energy, ParticleId, Pose, Powers, Simulation, State, System, evaluate};

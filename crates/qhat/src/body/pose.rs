@@ -1,4 +1,4 @@
-//! Pose: where a rigid group of particles is, how it is turned, and how it moves.
+//! Pose: the place, the turn and the motion of a rigid group of particles.
 //!
 //! ```text
 //! c = Σ m_i x_i / m,   v = Σ m_i v_i / m,   L = Σ m_i (x_i − c) × (v_i − v)            m, m/s, kg m²/s

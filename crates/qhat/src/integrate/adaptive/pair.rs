@@ -13,8 +13,9 @@ use crate::settings::Settings;
 use crate::state::State;
 use crate::system::System;
 
-/// Part of the extent of the system below which the way of the fastest particle in one h counts as rest. Over a substep
-/// it would be another speed for each length: where substeps shrink, as at a force that jumps, all errors would pass.
+/// Part of the extent of the system below which the way of the fastest particle in one h counts as rest. A way in one
+/// substep would stand for another speed at each length: where substeps shrink, as at a force that jumps, every error
+/// would pass.
 const AT_REST: f64 = 1e-3;
 
 /// Order from which on a pair crosses singular positions. Stages leave C = 0 by their own error, and the force that
@@ -28,8 +29,8 @@ const CROSSES: u32 = 7;
 /// 1588 of them in place of 830 (`benches/results/workloads.csv`).
 pub(crate) const ERROR_SCALE: f64 = 4.0;
 
-/// The speed to which errors of velocities are relative [m/s], where the fastest particle has the speed `fastest`, and
-/// comes to rest if it takes more than a time of `long` \[s\] for a thousandth of the extent.
+/// The speed to which errors of velocities are relative [m/s]: that of the fastest particle, `fastest`, and at least
+/// that of a way of `AT_REST` extents in a time of `long` \[s\].
 pub(crate) fn reference_speed(system: &System, fastest: f64, long: f64) -> f64 {
     // A system at rest to roundoff has no speed to compare with.
     fastest.max(AT_REST * system.extent / long)
