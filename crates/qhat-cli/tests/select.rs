@@ -1,15 +1,13 @@
 //! `--select`: the quantities of a trajectory, and the laws that they obey.
 
-use crate::common::npz::read;
+use crate::common::npz::{Array, read};
 use crate::common::{Folder, JERKED, PENDULUM};
 use qhat_scene::shipped;
+use std::collections::BTreeMap;
 
-/// Newton's law from the output alone: m a = applied + constraint forces on every particle that can move, in every
-/// frame of every shipped scene, friction included.
-#[test]
-fn long_forces_of_every_scene_add_up_to_mass_times_acceleration() {
+/// Runs every shipped scene for five short frames, and hands its name and the arrays that are selected to a test.
+fn for_every_scene(select: &str, test: &dyn Fn(&str, &BTreeMap<String, Array>)) {
     let folder = Folder::new();
-    let select = "accelerations,applied_forces,constraint_forces";
     for scene in shipped() {
         let name = scene.name;
         let run = ["run", name, "--quiet", "--no-tension", "--frames", "5", "--duration", "0.05", "--select", select];
@@ -19,7 +17,15 @@ fn long_forces_of_every_scene_add_up_to_mass_times_acceleration() {
             continue;
         }
         assert_eq!(ran.code, 0, "{name}: {ran:?}");
-        let npz = read(&folder.path("out.npz"));
+        test(name, &read(&folder.path("out.npz")));
+    }
+}
+
+/// Newton's law from the output alone: m a = applied + constraint forces on every particle that can move, in every
+/// frame of every shipped scene, friction included.
+#[test]
+fn long_forces_of_every_scene_add_up_to_mass_times_acceleration() {
+    for_every_scene("accelerations,applied_forces,constraint_forces", &|name, npz| {
         let masses = npz["masses"].numbers();
         let [a, applied, held] = ["accelerations", "applied_forces", "constraint_forces"].map(|it| npz[it].numbers());
         let d = npz["accelerations"].shape[2];
@@ -29,7 +35,7 @@ fn long_forces_of_every_scene_add_up_to_mass_times_acceleration() {
             // Three roundings of numbers of this size.
             assert!(off.abs() <= 1e-12 * size, "{name}: {off:e} N of {size:e} N");
         }
-    }
+    });
 }
 
 #[test]
@@ -96,18 +102,7 @@ fn events_are_in_the_output() {
 /// The power of all forces and constraints is that of the sum of their forces, in every frame of every shipped scene.
 #[test]
 fn long_powers_of_every_scene_add_up_to_force_times_velocity() {
-    let folder = Folder::new();
-    let select = "velocities,applied_forces,constraint_forces,force_power,constraint_power";
-    for scene in shipped() {
-        let name = scene.name;
-        let run = ["run", name, "--quiet", "--no-tension", "--frames", "5", "--duration", "0.05", "--select", select];
-        let ran = folder.qhat(&[&run[..], &["-o", "out.npz", "--force"]].concat());
-        // Integrators of fixed step take frames of their own.
-        if ran.code == 2 && ran.stderr.contains("takes steps of exactly h") {
-            continue;
-        }
-        assert_eq!(ran.code, 0, "{name}: {ran:?}");
-        let npz = read(&folder.path("out.npz"));
+    for_every_scene("velocities,applied_forces,constraint_forces,force_power,constraint_power", &|name, npz| {
         let [v, applied, held] = ["velocities", "applied_forces", "constraint_forces"].map(|it| npz[it].numbers());
         let masses = npz["masses"].numbers();
         let (frames, d) = (npz["velocities"].shape[0], npz["velocities"].shape[2]);
@@ -123,7 +118,7 @@ fn long_powers_of_every_scene_add_up_to_force_times_velocity() {
             // Roundings of as many terms as there are coordinates, rows and forces.
             assert!(off.abs() <= 1e-12 * size, "{name}, frame {frame}: {off:e} W of {size:e} W");
         }
-    }
+    });
 }
 
 /// A crank with a motor, a damped spring, a load that swings, and gravity.

@@ -52,7 +52,7 @@ pub(crate) fn drift<const D: usize>(system: &System, rows: &Rows, inactive: &[bo
     drift
 }
 
-/// The part of |C| of a row that counts: 1 where the row is held, 0 where it is soft.
+/// The part of |C| of a row that counts: all of it where the row is held, nothing where it is soft.
 fn weight(system: &System, row: usize) -> f64 {
     match () {
         () if system.is_held(row) => 1.0,

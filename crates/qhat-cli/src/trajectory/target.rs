@@ -67,8 +67,10 @@ impl Target {
     /// Writes the events of a CSV beside it; where there are none, removes those of a former run.
     pub(crate) fn put_events(&self, table: Option<&[u8]>) -> Result<(), Failure> {
         let Some(table) = table else {
-            let _ = std::fs::remove_file(beside(self.path(), "events.csv"));
-            return Ok(());
+            return match std::fs::remove_file(beside(self.path(), "events.csv")) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => Err(self.cannot_write(&error)),
+                _ => Ok(()),
+            };
         };
         let mut file = self.temporary()?;
         file.write_all(table).map_err(|error| self.cannot_write(&error))?;

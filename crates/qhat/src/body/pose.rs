@@ -3,17 +3,23 @@
 //! ```text
 //! c = Σ m_i x_i / m,   v = Σ m_i v_i / m,   L = Σ m_i (x_i − c) × (v_i − v)            m, m/s, kg m²/s
 //! x_i − c = R (X_i − C)                X: the positions to which the turn is relative
-//! I ω = L,   I = tr(S) 1 − S,   S = Σ m_i (x_i − c)(x_i − c)ᵀ
+//! ω = a × ȧ/|a|² + w a/|a|             a, b: the offsets x_i − c of two particles, ȧ, ḃ their rates
+//! w = (a/|a|)·(b' × (ḃ − (a × ȧ) × b/|a|²))/|b'|²         b': the part of b across a
 //! ```
 //!
-//! R takes the directions to two particles, the farthest from c and the farthest across that, to their present
-//! directions. A group in one line has no turn about itself: R is then the shortest turn, and ω lies across the line.
+//! a is that of the particle farthest from c, and b that of the one farthest across a, both at the positions X. R takes
+//! their directions to the present ones. A group in one line has no turn about itself: R is then the shortest turn,
+//! and w = 0.
 
 use crate::number::cross;
-use crate::point::{dot, minus, norm, scaled};
+use crate::point::{add, dot, minus, norm, scaled};
+use crate::space::ParticleId;
 
 /// Part of the size of a group below which its particles lie in one line.
 const IN_LINE: f64 = 1e-9;
+
+/// Sine of an angle that is roundoff of two unit vectors.
+const ROUNDOFF: f64 = 1e-15;
 
 /// The pose and motion of a rigid group of particles. In two dimensions z is 0 and turns are about z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,14 +57,14 @@ impl Pose {
         let (before, center, velocity) = (mean(masses, from), mean(masses, to), mean(masses, velocities));
         let from: Vec<[f64; 3]> = from.iter().map(|&x| minus(x, before)).collect();
         let to: Vec<[f64; 3]> = to.iter().map(|&x| minus(x, center)).collect();
-        let turning = velocities.iter().map(|&v| minus(v, velocity));
+        let rates: Vec<[f64; 3]> = velocities.iter().map(|&v| minus(v, velocity)).collect();
         let mut angular_momentum = [0.0; 3];
-        for ((&mass, &x), v) in masses.iter().zip(&to).zip(turning) {
-            let own = scaled(mass, cross(x, v));
-            angular_momentum = std::array::from_fn(|k| angular_momentum[k] + own[k]);
+        for ((&mass, &x), &rate) in masses.iter().zip(&to).zip(&rates) {
+            add(&mut angular_momentum, ParticleId(0), scaled(mass, cross(x, rate)));
         }
-        let rotation = rotation(&from, &to);
-        Pose { center, rotation, velocity, spin: spin(masses, &to, angular_momentum), angular_momentum }
+        let spread = Spread::of(&from);
+        let (rotation, spin) = (spread.rotation(&from, &to), spread.spin(&to, &rates));
+        Pose { center, rotation, velocity, spin, angular_momentum }
     }
 
     /// The angle of the turn about z, between −π and π \[rad\].
@@ -88,40 +94,75 @@ fn unit(x: [f64; 3]) -> [f64; 3] {
     scaled(1.0 / norm(x), x)
 }
 
-/// R as a quaternion, from the offsets of the particles before and now.
-fn rotation(from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 4] {
-    let far = largest(from.iter().map(|&x| norm(x)));
-    let size = from.get(far).map_or(0.0, |&x| norm(x));
-    if size == 0.0 {
-        return [1.0, 0.0, 0.0, 0.0];
+/// The particles whose directions tell a turn, by their places.
+enum Spread {
+    /// All particles are in one place.
+    Point,
+    /// a.
+    Line(usize),
+    /// a and b.
+    Full(usize, usize),
+}
+
+impl Spread {
+    fn of(offsets: &[[f64; 3]]) -> Self {
+        let far = largest(offsets.iter().map(|&x| norm(x)));
+        let size = offsets.get(far).map_or(0.0, |&x| norm(x));
+        if size == 0.0 {
+            return Spread::Point;
+        }
+        let a = unit(offsets[far]);
+        let beside = largest(offsets.iter().map(|&x| norm(across(x, a))));
+        if norm(across(offsets[beside], a)) > IN_LINE * size { Spread::Full(far, beside) } else { Spread::Line(far) }
     }
-    let [a, b] = [from[far], to[far]].map(unit);
-    let beside = largest(from.iter().map(|&x| norm(across(x, a))));
-    if norm(across(from[beside], a)) <= IN_LINE * size {
-        return shortest(a, b);
+
+    /// R as a quaternion, from the offsets before and now.
+    fn rotation(&self, from: &[[f64; 3]], to: &[[f64; 3]]) -> [f64; 4] {
+        match *self {
+            Spread::Point => [1.0, 0.0, 0.0, 0.0],
+            Spread::Line(a) => shortest(unit(from[a]), unit(to[a])),
+            Spread::Full(a, b) => {
+                let frame = |offsets: &[[f64; 3]]| {
+                    let along = unit(offsets[a]);
+                    let second = unit(across(offsets[b], along));
+                    [along, second, cross(along, second)]
+                };
+                let (before, now) = (frame(from), frame(to));
+                // R = Σ now_k before_kᵀ.
+                let entry = |i: usize, j: usize| (0..3).map(|k| now[k][i] * before[k][j]).sum();
+                quaternion(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))
+            }
+        }
     }
-    let frame = |along: [f64; 3], x: [f64; 3]| {
-        let second = unit(across(x, along));
-        [along, second, cross(along, second)]
-    };
-    let (before, now) = (frame(a, from[beside]), frame(b, to[beside]));
-    // R = Σ now_k before_kᵀ.
-    let R: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| now[k][i] * before[k][j]).sum()));
-    quaternion(R)
+
+    /// ω, from the offsets now and their rates.
+    fn spin(&self, offsets: &[[f64; 3]], rates: &[[f64; 3]]) -> [f64; 3] {
+        let (Spread::Line(a) | Spread::Full(a, _)) = *self else { return [0.0; 3] };
+        let square = dot(offsets[a], offsets[a]);
+        let mut omega = scaled(1.0 / square, cross(offsets[a], rates[a]));
+        if let Spread::Full(_, b) = *self {
+            let along = unit(offsets[a]);
+            let aside = across(offsets[b], along);
+            let rest = minus(rates[b], cross(omega, offsets[b]));
+            let w = dot(along, cross(aside, rest)) / dot(aside, aside);
+            add(&mut omega, ParticleId(0), scaled(w, along));
+        }
+        omega
+    }
 }
 
 /// The shortest turn from one direction to another.
 fn shortest(a: [f64; 3], b: [f64; 3]) -> [f64; 4] {
-    let w = 1.0 + dot(a, b);
-    if w < 1e-12 {
+    // 1 + a·b, without the roundoff of 1 where a and b are almost opposite.
+    let sum: [f64; 3] = std::array::from_fn(|k| a[k] + b[k]);
+    let (w, [x, y, z]) = (0.5 * dot(sum, sum), cross(a, b));
+    let length = (w * w + x * x + y * y + z * z).sqrt();
+    if length < ROUNDOFF {
         // Opposite directions: half a turn about an axis across them, in the plane about z.
         let other = if a[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
         let axis = unit(across(other, a));
         return [0.0, axis[0], axis[1], axis[2]];
     }
-    let [x, y, z] = cross(a, b);
-    let length = (w * w + x * x + y * y + z * z).sqrt();
     [w, x, y, z].map(|part| part / length)
 }
 
@@ -144,31 +185,4 @@ fn quaternion(R: [[f64; 3]; 3]) -> [f64; 4] {
     let length = found.iter().map(|part| part * part).sum::<f64>().sqrt();
     let sign = if found[0] < 0.0 { -1.0 } else { 1.0 };
     found.map(|part| sign * part / length)
-}
-
-/// ω with I ω = L.
-fn spin(masses: &[f64], offsets: &[[f64; 3]], L: [f64; 3]) -> [f64; 3] {
-    let mut S = [[0.0; 3]; 3];
-    for (&mass, x) in masses.iter().zip(offsets) {
-        for i in 0..3 {
-            for j in 0..3 {
-                S[i][j] += mass * x[i] * x[j];
-            }
-        }
-    }
-    let trace = S[0][0] + S[1][1] + S[2][2];
-    if trace == 0.0 {
-        return [0.0; 3];
-    }
-    let inertia: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { trace - S[i][j] } else { -S[i][j] }));
-    let [a, b, c] = inertia;
-    let determinant = dot(a, cross(b, c));
-    // I of a line is tr(S) across it and 0 along it, where L is 0, too.
-    if determinant <= IN_LINE * trace * trace * trace {
-        return scaled(1.0 / trace, L);
-    }
-    // Cramer's rule; I is symmetric.
-    let [u, v, w] = [cross(b, c), cross(c, a), cross(a, b)];
-    std::array::from_fn(|k| (u[k] * L[0] + v[k] * L[1] + w[k] * L[2]) / determinant)
 }

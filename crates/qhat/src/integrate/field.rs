@@ -81,7 +81,8 @@ pub(super) trait Field {
     /// Keeps the motion projected last, at the time t: moves the feet of beads on to it.
     fn follow(&mut self, _t: f64, _feet: &mut Vec<f64>) {}
 
-    /// Whether the motion that `time_to_singular` was asked about last is near a position where the rank drops.
+    /// Whether a substep from the motion that `time_to_singular` was asked about last may lead near a position where
+    /// the rank drops.
     fn is_near_singular(&self) -> bool {
         false
     }

@@ -6,11 +6,11 @@
 //! Σ P_f + Σ P_c = q̇ · (Q + Q̂) = dT/dt
 //! ```
 //!
-//! On legal motion Ċ = 0, and a rigid constraint has the power −λ C_t: that of its drive. A constraint that gives way
-//! is a force, whose λ is that of its own law. Friction is in the rows of its contact.
+//! On legal motion Ċ = 0, and a rigid constraint has the power −λ C_t: that of its drive. A constraint that gives
+//! way is a force, whose λ is that of its own law. Friction is in the rows of its contact.
 
 use super::Simulation;
-use crate::force::Acts;
+use crate::force::{Acts, Force};
 use crate::point::{Motion, block, dot};
 use crate::space::in_dimension;
 
@@ -48,7 +48,7 @@ impl Simulation {
         let (system, state) = (&self.system, &self.state);
         let motion = Motion::<D> { q: &state.q, qd: &state.qd, t: state.t };
         let mut Q = vec![0.0; system.coordinate_count()];
-        let power = |force: &crate::force::Force| {
+        let power = |force: &Force| {
             force.add(motion, &system.mass, &mut Q);
             let mut touched = force.particles();
             if touched.is_empty() {
@@ -68,18 +68,19 @@ impl Simulation {
     }
 
     fn powers_of_constraints<const D: usize>(&mut self) -> Vec<f64> {
-        let (terms, s) = (self.terms(), 1.0 - self.feedback_in_use().elasticity);
-        let (system, J) = (&self.system, &self.workspace.equation().rows.J);
+        let feedback = self.feedback_in_use();
+        let (system, s) = (&self.system, 1.0 - feedback.elasticity);
+        let equation = self.workspace.solve::<D>(system, &self.state, &feedback);
         let of_row = |row: usize| {
-            // As in `Simulation::reaction`.
-            let factor = if system.is_rigid(row) { s } else { 1.0 };
             let entries = system.layout.start[row]..system.layout.start[row + 1];
-            let terms_of_row = entries.map(|e| {
+            let terms = entries.map(|e| {
                 let id = system.layout.particle[e];
                 // Fixed particles take no work.
-                if system.is_fixed(id) { 0.0 } else { dot(J.entry::<D>(e), block(&terms.velocities, id)) }
+                if system.is_fixed(id) { 0.0 } else { dot(equation.rows.J.entry::<D>(e), block(&self.state.qd, id)) }
             });
-            factor * terms.multipliers[row] * terms_of_row.sum::<f64>()
+            // As in `Simulation::reaction`.
+            let factor = if system.is_rigid(row) { s } else { 1.0 };
+            factor * equation.lambda[row] * terms.sum::<f64>()
         };
         system.constraints().iter().map(|named| named.rows(D).map(of_row).sum()).collect()
     }

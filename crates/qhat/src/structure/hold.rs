@@ -46,12 +46,15 @@ pub(crate) fn hold<const D: usize>(
     let mut hold = Hold::default();
     let mut kept: Vec<ConstraintId> = Vec::new();
     let mut bodies = Bodies::new(inverse_mass);
+    let mut planes: BTreeMap<ParticleId, Vec<&FlatClique>> = BTreeMap::new();
+    for plane in cliques.iter().filter(|clique| !clique.is_line) {
+        plane.particles.iter().for_each(|&id| planes.entry(id).or_default().push(plane));
+    }
     // A line within a plane is held by the plane.
     for clique in cliques.iter().rev() {
-        let within = |plane: &FlatClique| {
-            !plane.is_line && clique.particles.iter().all(|id| plane.particles.binary_search(id).is_ok())
-        };
-        if !clique.is_line || !cliques.iter().any(within) {
+        let has_all = |plane: &&FlatClique| clique.particles.iter().all(|id| plane.particles.binary_search(id).is_ok());
+        let around = clique.particles.first().and_then(|id| planes.get(id));
+        if !clique.is_line || !around.is_some_and(|planes| planes.iter().any(has_all)) {
             hold.relations.extend(relations::<D>(clique, inverse_mass, q));
         }
         let flat = Flat::of::<D>(clique, q);

@@ -14,10 +14,10 @@ const PASSES: usize = 4;
 /// |Ċ|, relative to the speed of the fastest particle over the extent, below which it is roundoff.
 const CONSISTENT: f64 = 1e-13;
 
-/// Change of q̇ over |Ċ|, relative to the extent, and relative to the speed of the fastest particle, above which Ċ says
-/// nothing of the change: where cranks pass the line of their pivots the two are 40 to 750 and 0.75 to 2. In shipped
-/// scenes, at their h and at five times h, a change above 0.5 comes with at most 4.5 of the first; the heavy end of a
-/// chain has up to 61, with changes up to 0.25.
+/// Change of q̇ over |Ċ| and the extent, and over the speed of the fastest particle, above which Ċ says nothing of the
+/// change: where cranks pass the line of their pivots the two ratios are 40 to 750 and 0.75 to 2. In shipped scenes,
+/// at their h and at five times h, a second ratio above 0.5 comes with a first of at most 4.5; the heavy end of a
+/// chain has a first of up to 61, with a second of up to 0.25.
 const ILL_DETERMINED: f64 = 10.0;
 const TURNED: f64 = 0.5;
 
